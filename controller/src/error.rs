@@ -1,0 +1,34 @@
+//! The one error of construction: a parameter outside its range.
+
+use core::fmt;
+
+use crate::scalar::Real;
+
+/// A parameter outside its allowed range. Names the field, the value and the range.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutOfRange<T> {
+    /// The field's name, as in the struct that holds it.
+    pub field: &'static str,
+    /// The value given, in the field's unit.
+    pub value: T,
+    /// The least allowed value.
+    pub min: T,
+    /// The largest allowed value.
+    pub max: T,
+}
+
+impl<T: Real> OutOfRange<T> {
+    /// `Ok` if `min` ≤ `value` ≤ `max`, which a NaN is not.
+    pub fn check(field: &'static str, value: T, min: f64, max: f64) -> Result<(), Self> {
+        let (min, max) = (T::lit(min), T::lit(max));
+        if value >= min && value <= max { Ok(()) } else { Err(Self { field, value, min, max }) }
+    }
+}
+
+impl<T: Real> fmt::Display for OutOfRange<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {} is outside {} to {}", self.field, self.value, self.min, self.max)
+    }
+}
+
+impl<T: Real> core::error::Error for OutOfRange<T> {}

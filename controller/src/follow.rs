@@ -1,0 +1,237 @@
+//! The path-following law (11), (13), with the paper's integral action (15).
+//!
+//! State, ζ → [lift](mod@crate::lift) → outputs along the [path](crate::path) → ν → one 3×3 system → [lower](mod@crate::lower) →
+//! u_ζ, τ. Relative degrees are {6, 6, 5, 2}: ξ has 19 numbers.
+
+use nalgebra::Vector3;
+
+use crate::compensator::{Command, Compensator, Sampling};
+use crate::envelope::Margins;
+use crate::error::OutOfRange;
+use crate::gains::{self, GainError};
+use crate::lift::lift;
+use crate::lower::lower;
+use crate::path::Path;
+use crate::scalar::Real;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+use crate::yaw::Yaw;
+
+/// The gains of (13) and (15), low order first: ν = −K ξ − (K̃ ξ̃, 0).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains<T> {
+    /// Of h1, ḣ1, …, h1⁽⁵⁾.
+    pub k1: [T; 6],
+    /// Of h2, ḣ2, …, h2⁽⁵⁾.
+    pub k2: [T; 6],
+    /// Of h3, …, h3⁽⁴⁾.
+    pub k3: [T; 5],
+    /// Of h4, ḣ4.
+    pub k4: [T; 2],
+    /// Of ∫h1, ∫h2, ∫h3; zeros switch integral action off.
+    pub integral: [T; 3],
+}
+
+impl<T: Real> Gains<T> {
+    /// `Ok` if every closed loop is stable, integral action included.
+    pub fn check(&self) -> Result<(), GainError<T>> {
+        gains::check::<_, 6, 7>(1, &self.k1, self.integral[0])?;
+        gains::check::<_, 6, 7>(2, &self.k2, self.integral[1])?;
+        gains::check::<_, 5, 6>(3, &self.k3, self.integral[2])?;
+        gains::check::<_, 2, 3>(4, &self.k4, T::zero())
+    }
+}
+
+/// The outputs and their derivatives (the normal form's coordinates), 19 numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Xi<T> {
+    /// h1, …, h1⁽⁵⁾.
+    pub h1: [T; 6],
+    /// h2, …, h2⁽⁵⁾.
+    pub h2: [T; 6],
+    /// h3 = ρ·v − v_d, …, h3⁽⁴⁾, m/s¹⁺ᵏ.
+    pub h3: [T; 5],
+    /// h4 = ψ − ψ_d in (−π, π], and ḣ4; rad, rad/s.
+    pub h4: [T; 2],
+}
+
+/// What a law answers: the command, and the numbers it came from as telemetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution<T, X> {
+    /// Thrust (9) and torque (11).
+    pub command: Command<T>,
+    /// The compensator's input, m/s⁶.
+    pub u_zeta: T,
+    /// Outputs and derivatives.
+    pub xi: X,
+    /// ν of (13), the wanted highest derivatives of the outputs.
+    pub nu: [T; 4],
+    /// Distances from the singularities.
+    pub margins: Margins<T>,
+}
+
+/// Evaluates the law at `state`, ζ and the integrals ξ̃ = ∫(h1, h2, h3) as they are, without looking ahead.
+#[inline]
+pub fn law<T: Real, P: Path<T> + ?Sized>(
+    vehicle: &Vehicle<T>,
+    path: &mut P,
+    gains: &Gains<T>,
+    state: &State<T>,
+    zeta: &[T; 4],
+    integral: &[T; 3],
+) -> Solution<T, Xi<T>> {
+    let lift = lift(vehicle, state, zeta);
+    let yaw = Yaw::of(state);
+    let outputs = path.outputs(&lift.position());
+    let [s1, s2] = &outputs.surfaces;
+    let s3 = &outputs.speed_error;
+
+    let xi = Xi {
+        h1: core::array::from_fn(|k| s1.derivative(k)),
+        h2: core::array::from_fn(|k| s2.derivative(k)),
+        h3: core::array::from_fn(|k| s3.derivative(k)),
+        h4: [(yaw.angle - outputs.yaw.value()).wrap_angle(), yaw.rate - outputs.yaw.derivative(1)],
+    };
+    let nu = [
+        -(dot(&gains.k1, &xi.h1) + gains.integral[0] * integral[0]),
+        -(dot(&gains.k2, &xi.h2) + gains.integral[1] * integral[1]),
+        -(dot(&gains.k3, &xi.h3) + gains.integral[2] * integral[2]),
+        -dot(&gains.k4, &xi.h4),
+    ];
+
+    // (∇h1, ∇h2, ρ)ᵀ p⁽⁶⁾ = ν − b̄, solved by the rows' cross products.
+    let [g1, g2] = &outputs.gradients;
+    let rho = &outputs.tangent;
+    let c1 = g2.cross(rho);
+    let path_det = g1.dot(&c1);
+    let r1 = nu[0] - s1.derivative(6);
+    let r2 = nu[1] - s2.derivative(6);
+    let r3 = nu[2] - s3.derivative(5);
+    let position_6: Vector3<T> = (c1 * r1 + rho.cross(g1) * r2 + g1.cross(g2) * r3) * (T::one() / path_det);
+
+    let yaw_2 = nu[3] + outputs.yaw.derivative(2);
+    Solution {
+        command: Command {
+            thrust: lift.thrust(vehicle),
+            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2),
+        },
+        u_zeta: position_6.z,
+        xi,
+        nu,
+        margins: Margins {
+            q3: state.rod.z,
+            q_b3: lift.b3_rod,
+            lambda: lift.lambda[0],
+            kappa: lift.kappa,
+            path_det,
+            cos_phi_squared: yaw.cos_phi_squared,
+        },
+    }
+}
+
+/// Σ aₖ bₖ.
+#[inline]
+pub(crate) fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+}
+
+/// Why a controller could not be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SetupError<T> {
+    /// A parameter is out of range.
+    Range(OutOfRange<T>),
+    /// The gains do not make a stable loop.
+    Gains(GainError<T>),
+}
+
+impl<T> From<OutOfRange<T>> for SetupError<T> {
+    fn from(error: OutOfRange<T>) -> Self {
+        Self::Range(error)
+    }
+}
+
+impl<T> From<GainError<T>> for SetupError<T> {
+    fn from(error: GainError<T>) -> Self {
+        Self::Gains(error)
+    }
+}
+
+impl<T: Real> core::fmt::Display for SetupError<T> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Range(error) => error.fmt(f),
+            Self::Gains(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<T: Real> core::error::Error for SetupError<T> {}
+
+/// The path-following controller: the law at a fixed rate, with its compensator and integrals.
+#[derive(Clone, Debug)]
+pub struct Follower<T, P> {
+    vehicle: Vehicle<T>,
+    path: P,
+    gains: Gains<T>,
+    compensator: Compensator<T>,
+    integral: [T; 3],
+}
+
+impl<T: Real, P: Path<T>> Follower<T, P> {
+    /// A controller at hover (ζ = 0), with gains that have been found stable.
+    pub fn new(vehicle: Vehicle<T>, path: P, gains: Gains<T>, sampling: Sampling<T>) -> Result<Self, SetupError<T>> {
+        gains.check()?;
+        let compensator = Compensator::new(&vehicle, sampling)?;
+        let mut gains = gains;
+        if sampling.look_ahead {
+            // ξ̃ is kept for the sample and the law acts h/2 later: ξ̃(h/2) = ξ̃ + (h/2) h_i.
+            let lead = sampling.period * T::lit(0.5);
+            gains.k1[0] += gains.integral[0] * lead;
+            gains.k2[0] += gains.integral[1] * lead;
+            gains.k3[0] += gains.integral[2] * lead;
+        }
+        Ok(Self { vehicle, path, gains, compensator, integral: [T::zero(); 3] })
+    }
+
+    /// Starts from a stated ζ with the integrals at zero. Hover is ζ = 0.
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
+        self.compensator.start(&self.vehicle, state, zeta);
+        self.integral = [T::zero(); 3];
+    }
+
+    /// Takes over from whatever applied `applied` until now, without a bump in thrust: the first command's thrust and
+    /// its first two derivatives continue it.
+    pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
+        self.compensator.engage(&self.vehicle, state, applied);
+        self.integral = [T::zero(); 3];
+    }
+
+    /// The command for the coming hold, from the state sampled now. Call once every period.
+    #[inline]
+    pub fn step(&mut self, state: &State<T>) -> Solution<T, Xi<T>> {
+        let (state, zeta) = self.compensator.ahead(&self.vehicle, state);
+        let solution = law(&self.vehicle, &mut self.path, &self.gains, &state, &zeta, &self.integral);
+        self.compensator.advance(solution.u_zeta, solution.command);
+        let period = self.compensator.period();
+        let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
+        for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
+            *integral += period * h;
+        }
+        solution
+    }
+
+    /// ζ at the next sample.
+    pub fn zeta(&self) -> &[T; 4] {
+        self.compensator.zeta()
+    }
+
+    /// ξ̃ = ∫(h1, h2, h3) up to the next sample.
+    pub fn integral(&self) -> &[T; 3] {
+        &self.integral
+    }
+
+    /// The vehicle as the law knows it.
+    pub fn vehicle(&self) -> &Vehicle<T> {
+        &self.vehicle
+    }
+}

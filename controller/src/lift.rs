@@ -1,0 +1,115 @@
+//! Lift: from the state and ζ to the payload's Taylor series, p to p⁽⁵⁾, with one line of algebra an order.
+//!
+//! With λ the payload's specific force along the rod, s = λ q, κ = T/(m_Q L) and c = M/(m_Q L), model (1) reads, free of charts,
+//!
+//! ```text
+//! v̇ = g e3 + s,               s3 = ζ1 − g
+//! q̈ = κ b3 + c s,             κ (b3·q) = −(|q̇|² + c λ)
+//! ```
+//!
+//! Each time derivative of these lines is linear in the highest derivative it brings: λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1},
+//! κ⁽ⁿ⁾ from the last equation, q⁽ⁿ⁺²⁾ from the pendulum line, and p⁽ⁿ⁺²⁾ = s⁽ⁿ⁾.
+//! It divides by q3 and by b3·q, the paper's singularities α, β = ±π/2 and b3 ⊥ q.
+
+use nalgebra::Vector3;
+
+use crate::scalar::Real;
+use crate::series::Series;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+
+/// The payload's coordinates p1, p2, p3 as series of order 6 in time. The sixth coefficient is zero: that order holds
+/// the input, which outputs see only through their gradients.
+pub type PositionSeries<T> = [Series<T, 7>; 3];
+
+/// The payload's motion to fifth order, with what [`lower`](crate::lower::lower) needs to go back.
+#[derive(Clone, Copy, Debug)]
+pub struct Lift<T> {
+    /// p, v, p̈, …, p⁽⁵⁾ in N, m/sᵏ.
+    pub derivatives: [Vector3<T>; 6],
+    /// λ, λ̇, λ̈, λ⃛: specific force along the rod, m/s²⁺ᵏ; λ = −g when hanging at rest.
+    pub lambda: [T; 4],
+    /// κ = T/(m_Q L), 1/s².
+    pub kappa: T,
+    /// κ̇, 1/s³.
+    pub kappa_dot: T,
+    /// q̈ in N, 1/s².
+    pub rod_2: Vector3<T>,
+    /// q⃛ in N, 1/s³.
+    pub rod_3: Vector3<T>,
+    /// b3·q, 1 when the thrust acts along the rod.
+    pub b3_rod: T,
+}
+
+impl<T: Real> Lift<T> {
+    /// Thrust (9), T = κ m_Q L, N.
+    #[inline]
+    pub fn thrust(&self, vehicle: &Vehicle<T>) -> T {
+        self.kappa * vehicle.thrust_per_kappa
+    }
+
+    /// The payload's position as a series in time.
+    #[inline]
+    pub fn position(&self) -> PositionSeries<T> {
+        let [p, v, a, j, s, c] = &self.derivatives;
+        let series = |p, v, a, j, s, c| Series::from_derivatives([p, v, a, j, s, c, T::zero()]);
+        [
+            series(p.x, v.x, a.x, j.x, s.x, c.x),
+            series(p.y, v.y, a.y, j.y, s.y, c.y),
+            series(p.z, v.z, a.z, j.z, s.z, c.z),
+        ]
+    }
+}
+
+/// Lifts `state` and the compensator's ζ = (v̇3, v̈3, …), m/s²⁺ᵏ, to the payload's series.
+///
+/// Needs |`rod`| = 1, `rod_rate` ⊥ `rod` and an orthonormal attitude.
+#[inline]
+pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4]) -> Lift<T> {
+    let two = T::lit(2.0);
+    let three = T::lit(3.0);
+    let c = vehicle.coupling;
+    let gravity = vehicle.params().gravity;
+    let [zeta1, zeta2, zeta3, zeta4] = *zeta;
+    let (q, w) = (&state.rod, &state.rod_rate);
+    let b1: Vector3<T> = state.attitude.column(0).into();
+    let b2: Vector3<T> = state.attitude.column(1).into();
+    let b3: Vector3<T> = state.attitude.column(2).into();
+    let b3_dot = b1 * state.body_rate.y - b2 * state.body_rate.x;
+
+    let b3_rod = b3.dot(q);
+    let per_q3 = T::one() / q.z;
+    let per_b3_rod = T::one() / b3_rod;
+
+    // Order 0: specific force, thrust, rod acceleration.
+    let lambda = (zeta1 - gravity) * per_q3;
+    let s = q * lambda;
+    let kappa = -(w.dot(w) + c * lambda) * per_b3_rod;
+    let rod_2 = b3 * kappa + s * c;
+
+    // Order 1. Here and below the third component of s⁽ⁿ⁾ is ζ itself, free of rounding.
+    let lambda_1 = (zeta2 - lambda * w.z) * per_q3;
+    let mut s_1 = q * lambda_1 + w * lambda;
+    s_1.z = zeta2;
+    let kappa_dot = -(two * w.dot(&rod_2) + c * lambda_1 + kappa * (b3_dot.dot(q) + b3.dot(w))) * per_b3_rod;
+    let rod_3 = b3 * kappa_dot + b3_dot * kappa + s_1 * c;
+
+    // Orders 2 and 3 of the specific force need no more of the rod than q⃛.
+    let lambda_2 = (zeta3 - two * lambda_1 * w.z - lambda * rod_2.z) * per_q3;
+    let mut s_2 = q * lambda_2 + w * (two * lambda_1) + rod_2 * lambda;
+    s_2.z = zeta3;
+    let lambda_3 = (zeta4 - three * (lambda_2 * w.z + lambda_1 * rod_2.z) - lambda * rod_3.z) * per_q3;
+    let mut s_3 = q * lambda_3 + (w * lambda_2 + rod_2 * lambda_1) * three + rod_3 * lambda;
+    s_3.z = zeta4;
+
+    let acceleration = Vector3::new(s.x, s.y, zeta1);
+    Lift {
+        derivatives: [state.position, state.velocity, acceleration, s_1, s_2, s_3],
+        lambda: [lambda, lambda_1, lambda_2, lambda_3],
+        kappa,
+        kappa_dot,
+        rod_2,
+        rod_3,
+        b3_rod,
+    }
+}

@@ -1,0 +1,55 @@
+//! The paper's horizontal circle (16).
+
+use nalgebra::Vector3;
+
+use crate::error::OutOfRange;
+use crate::lift::PositionSeries;
+use crate::path::{ConstantSpeed, Curve, FixedYaw, Located, Profiled};
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// Circle of radius d1 about the n3 axis at height p3 = d2, with the outputs of (16):
+///
+/// ```text
+/// h1 = p1² + p2² − d1²,   h2 = p3 − d2,   ρ = (−p2, p1, 0)/√(p1² + p2²)
+/// ```
+///
+/// **h1 is in m², and ρ is the opposite of (3)**, both as printed: seen from above (n3 down), ρ turns from n1 to n2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle<T> {
+    radius: T,
+    p3: T,
+}
+
+impl<T: Real> Circle<T> {
+    /// A circle of `radius` 0.01 to 10⁵ m at `p3` m (negative is above the origin), |p3| ≤ 10⁵.
+    pub fn new(radius: T, p3: T) -> Result<Self, OutOfRange<T>> {
+        OutOfRange::check("radius", radius, 0.01, 1e5)?;
+        OutOfRange::check("p3", p3, -1e5, 1e5)?;
+        Ok(Self { radius, p3 })
+    }
+
+    /// The circle with a constant speed (m/s along ρ) and yaw 0: the paper's path.
+    pub fn at_speed(self, speed: T) -> Profiled<Self, ConstantSpeed<T>, FixedYaw<T>> {
+        Profiled { curve: self, speed: ConstantSpeed(speed), yaw: FixedYaw(T::zero()) }
+    }
+}
+
+impl<T: Real> Curve<T> for Circle<T> {
+    #[inline]
+    fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
+        let [x, y, z] = position;
+        let distance_squared = x.square() + y.square();
+
+        let rho: Series<T, 6> = distance_squared.truncate().rsqrt();
+        let moment = x.truncate() * y.differentiate() - y.truncate() * x.differentiate();
+        let (x0, y0, per_distance) = (x.value(), y.value(), rho.value());
+        let (zero, one) = (T::zero(), T::one());
+        Located {
+            surfaces: [distance_squared - self.radius * self.radius, *z - self.p3],
+            gradients: [Vector3::new(x0 + x0, y0 + y0, zero), Vector3::new(zero, zero, one)],
+            tangent: Vector3::new(-y0 * per_distance, x0 * per_distance, zero),
+            speed: moment * rho,
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! Paths: closed curves in space with a speed and a yaw prescribed along them.
+//!
+//! A curve is the common zero of two functions, C = {h1(p) = 0, h2(p) = 0}, and runs along the unit tangent ρ, which is
+//! (∇h1 × ∇h2)/|∇h1 × ∇h2| or its opposite: **a curve states its direction**. The law sees a path only through its outputs (4),
+//! evaluated on the payload's Taylor series, so every derivative that the law needs comes from ordinary series
+//! arithmetic.
+//!
+//! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`].
+
+mod circle;
+mod profile;
+
+pub use circle::Circle;
+pub use profile::{ConstantSpeed, FixedYaw};
+
+use nalgebra::Vector3;
+
+use crate::lift::PositionSeries;
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// The outputs (4) along the payload's series, with the input's contribution to the highest orders left out.
+#[derive(Clone, Copy, Debug)]
+pub struct Outputs<T> {
+    /// h1 and h2, orders 0 to 6. Their unit is the curve's choice (the paper's circle: m² and m).
+    pub surfaces: [Series<T, 7>; 2],
+    /// ∇h1 and ∇h2 now, in N.
+    pub gradients: [Vector3<T>; 2],
+    /// ρ now, in N.
+    pub tangent: Vector3<T>,
+    /// h3 = ρ·v − v_d, m/s, orders 0 to 5.
+    pub speed_error: Series<T, 6>,
+    /// ψ_d, rad, orders 0 to 2. Any representative modulo 2π: the law wraps the difference.
+    pub yaw: Series<T, 3>,
+}
+
+/// A closed curve with speed and yaw along it.
+pub trait Path<T: Real> {
+    /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
+}
+
+/// Where a payload is with respect to a curve, along its Taylor series.
+#[derive(Clone, Copy, Debug)]
+pub struct Located<T> {
+    /// h1 and h2, orders 0 to 6.
+    pub surfaces: [Series<T, 7>; 2],
+    /// ∇h1 and ∇h2 now, in N.
+    pub gradients: [Vector3<T>; 2],
+    /// ρ now, in N.
+    pub tangent: Vector3<T>,
+    /// ρ·v, m/s, orders 0 to 5.
+    pub speed: Series<T, 6>,
+}
+
+/// A closed curve in space, as two functions that vanish on it.
+pub trait Curve<T: Real> {
+    /// Evaluates the curve's functions along `position`.
+    fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
+}
+
+/// The speed v_d prescribed along a curve, as a function of position.
+pub trait SpeedProfile<T: Real> {
+    /// v_d, m/s along ρ (negative: against it), orders 0 to 5.
+    fn speed(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6>;
+}
+
+/// The yaw ψ_d prescribed along a curve, as a function of position.
+pub trait YawProfile<T: Real> {
+    /// ψ_d, rad, orders 0 to 2.
+    fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3>;
+}
+
+/// A curve with its speed and yaw profiles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profiled<C, S, Y> {
+    /// The curve.
+    pub curve: C,
+    /// v_d along it.
+    pub speed: S,
+    /// ψ_d along it.
+    pub yaw: Y,
+}
+
+impl<T, C, S, Y> Path<T> for Profiled<C, S, Y>
+where
+    T: Real,
+    C: Curve<T>,
+    S: SpeedProfile<T>,
+    Y: YawProfile<T>,
+{
+    #[inline]
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+        let located = self.curve.locate(position);
+        Outputs {
+            surfaces: located.surfaces,
+            gradients: located.gradients,
+            tangent: located.tangent,
+            speed_error: located.speed - self.speed.speed(position, &located),
+            yaw: self.yaw.yaw(position, &located),
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! Truncated Taylor polynomials of one variable (univariate jets) and their arithmetic.
+//!
+//! [`Series<T, N>`] holds a function of time about "now": f(t) = Σ cₖ tᵏ, cₖ = f⁽ᵏ⁾(0)/k!, k < N. A path evaluated on the
+//! payload's series gives its outputs with all their time derivatives in one pass (Taylor-mode automatic
+//! differentiation; Griewank and Walther, *Evaluating Derivatives*, ch. 13). Lengths are compile-time constants and every
+//! loop has constant bounds, so the cost is constant.
+//!
+//! **Coefficients, not derivatives:** the k-th derivative is k! times the k-th coefficient, see [`Series::derivative`].
+
+// Indices here run over compile-time bounds below N; iterator chains in their place hide the convolutions.
+#![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
+
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+use crate::scalar::Real;
+
+/// k! for every order the law reaches.
+const FACTORIAL: [f64; 7] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0];
+
+/// Taylor coefficients of order 0 to N − 1, N ≤ 7.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Series<T, const N: usize>(pub [T; N]);
+
+impl<T: Real, const N: usize> Series<T, N> {
+    /// A constant.
+    #[inline]
+    pub fn constant(value: T) -> Self {
+        let mut c = [T::zero(); N];
+        c[0] = value;
+        Self(c)
+    }
+
+    /// The series with the given derivatives f, ḟ, f̈, …
+    #[inline]
+    pub fn from_derivatives(derivatives: [T; N]) -> Self {
+        let mut c = derivatives;
+        for k in 2..N {
+            c[k] = derivatives[k] * T::lit(1.0 / FACTORIAL[k]);
+        }
+        Self(c)
+    }
+
+    /// The k-th derivative, k! cₖ.
+    #[inline]
+    pub fn derivative(&self, k: usize) -> T {
+        self.0[k] * T::lit(FACTORIAL[k])
+    }
+
+    /// The value, c₀.
+    #[inline]
+    pub fn value(&self) -> T {
+        self.0[0]
+    }
+
+    /// The first M coefficients.
+    #[inline]
+    pub fn truncate<const M: usize>(&self) -> Series<T, M> {
+        const { assert!(M <= N) };
+        let mut c = [T::zero(); M];
+        c.copy_from_slice(&self.0[..M]);
+        Series(c)
+    }
+
+    /// The first M coefficients of the time derivative.
+    #[inline]
+    pub fn differentiate<const M: usize>(&self) -> Series<T, M> {
+        const { assert!(M < N) };
+        let mut c = [T::zero(); M];
+        for k in 0..M {
+            c[k] = self.0[k + 1] * T::lit((k + 1) as f64);
+        }
+        Series(c)
+    }
+
+    /// The same polynomial about t = `dt` instead of t = 0 (Horner's synthetic division).
+    #[inline]
+    pub fn shift(&self, dt: T) -> Self {
+        let mut c = self.0;
+        for first in 0..N {
+            for k in (first..N - 1).rev() {
+                c[k] += c[k + 1] * dt;
+            }
+        }
+        Self(c)
+    }
+
+    /// f², half the work of f·f.
+    #[inline]
+    pub fn square(&self) -> Self {
+        let a = &self.0;
+        let mut c = [T::zero(); N];
+        for k in 0..N {
+            let mut half = T::zero();
+            for j in 0..k.div_ceil(2) {
+                half += a[j] * a[k - j];
+            }
+            c[k] = half + half;
+            if k % 2 == 0 {
+                c[k] += a[k / 2] * a[k / 2];
+            }
+        }
+        Self(c)
+    }
+
+    /// f^α for a constant α, given f₀^α and 1/f₀: from f·y˙ = α·f˙·y.
+    #[inline]
+    fn power_from(&self, alpha: f64, value: T, inverse: T) -> Self {
+        let mut y = [T::zero(); N];
+        y[0] = value;
+        for k in 1..N {
+            let mut sum = T::zero();
+            for j in 1..=k {
+                let weight = (alpha * j as f64 - (k - j) as f64) / k as f64;
+                sum += self.0[j] * y[k - j] * T::lit(weight);
+            }
+            y[k] = sum * inverse;
+        }
+        Self(y)
+    }
+
+    /// 1/f, f₀ ≠ 0.
+    #[inline]
+    pub fn recip(&self) -> Self {
+        let inverse = T::one() / self.0[0];
+        let mut y = [T::zero(); N];
+        y[0] = inverse;
+        for k in 1..N {
+            let mut sum = T::zero();
+            for j in 1..=k {
+                sum += self.0[j] * y[k - j];
+            }
+            y[k] = -sum * inverse;
+        }
+        Self(y)
+    }
+
+    /// √f, f₀ > 0.
+    #[inline]
+    pub fn sqrt(&self) -> Self {
+        self.power_from(0.5, self.0[0].sqrt(), T::one() / self.0[0])
+    }
+
+    /// 1/√f, f₀ > 0.
+    #[inline]
+    pub fn rsqrt(&self) -> Self {
+        let inverse = T::one() / self.0[0];
+        self.power_from(-0.5, self.0[0].sqrt() * inverse, inverse)
+    }
+}
+
+impl<T: Real, const N: usize> Add for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl<T: Real, const N: usize> AddAssign for Series<T, N> {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for k in 0..N {
+            self.0[k] += other.0[k];
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Sub for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn sub(mut self, other: Self) -> Self {
+        for k in 0..N {
+            self.0[k] -= other.0[k];
+        }
+        self
+    }
+}
+
+impl<T: Real, const N: usize> Neg for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self(self.0.map(|c| -c))
+    }
+}
+
+impl<T: Real, const N: usize> Mul for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let mut c = [T::zero(); N];
+        for k in 0..N {
+            let mut sum = self.0[0] * other.0[k];
+            for j in 1..=k {
+                sum += self.0[j] * other.0[k - j];
+            }
+            c[k] = sum;
+        }
+        Self(c)
+    }
+}
+
+impl<T: Real, const N: usize> Div for Series<T, N> {
+    type Output = Self;
+    /// Quotient, the divisor's value ≠ 0.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let inverse = T::one() / other.0[0];
+        let mut c = [T::zero(); N];
+        for k in 0..N {
+            let mut sum = self.0[k];
+            for j in 1..=k {
+                sum -= other.0[j] * c[k - j];
+            }
+            c[k] = sum * inverse;
+        }
+        Self(c)
+    }
+}
+
+impl<T: Real, const N: usize> Add<T> for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn add(mut self, constant: T) -> Self {
+        self.0[0] += constant;
+        self
+    }
+}
+
+impl<T: Real, const N: usize> Sub<T> for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn sub(mut self, constant: T) -> Self {
+        self.0[0] -= constant;
+        self
+    }
+}
+
+impl<T: Real, const N: usize> Mul<T> for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, constant: T) -> Self {
+        Self(self.0.map(|c| c * constant))
+    }
+}
