@@ -93,16 +93,14 @@ pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainE
             return Err(GainError::UnstablePole { re });
         }
         // Multiply by s + b, or by s² + b s + c.
-        let coefficient = |k: &[T; R], j: isize| match j {
-            j if j < 0 => T::zero(),
-            j if j as usize == degree => T::one(),
-            j if (j as usize) < degree => k[j as usize],
-            _ => T::zero(),
-        };
         let old = k;
-        for j in 0..degree + order {
-            let at = |shift: usize| coefficient(&old, j as isize - shift as isize);
-            k[j] = if order == 1 { at(1) + b * at(0) } else { at(2) + b * at(1) + c * at(0) };
+        for (j, k) in k.iter_mut().enumerate().take(degree + order) {
+            let at = |shift| match j.checked_sub(shift) {
+                Some(i) if i == degree => T::one(),
+                Some(i) => old.get(i).copied().unwrap_or_else(T::zero),
+                None => T::zero(),
+            };
+            *k = if order == 1 { at(1) + b * at(0) } else { at(2) + b * at(1) + c * at(0) };
         }
         degree += order;
     }
