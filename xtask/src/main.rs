@@ -1,2 +1,52 @@
-//! The project's own commands.
-fn main() {}
+//! The project's own commands, `cargo xtask …`: what plain cargo can't do alone.
+
+use clap::{Parser, Subcommand};
+
+mod callgraph;
+mod emulator;
+mod image;
+mod report;
+mod target;
+mod thumb;
+mod toolchain;
+
+/// Builds for the target and measures on it.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Measures the control step on the emulated Cortex-M4F and M7, and proves that host and target agree bit for bit.
+    #[command(after_help = "Fails if a number exceeds firmware/bench/expected.json or a proof does not hold.\n\n\
+        Examples:\n  cargo xtask target\n  cargo xtask target --json\n  cargo xtask target --refresh")]
+    Target {
+        /// Print one JSON object in place of the table.
+        #[arg(long)]
+        json: bool,
+        /// Write what was measured to the expected values.
+        #[arg(long)]
+        refresh: bool,
+    },
+    /// Runs cargo in firmware/ with whichever compiler builds for thumbv7em here.
+    #[command(after_help = "Example:\n  cargo xtask thumb build --release")]
+    Thumb {
+        /// cargo's arguments, its command first.
+        #[arg(required = true, trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<String>,
+    },
+}
+
+fn main() -> anyhow::Result<()> {
+    match Arguments::parse().command {
+        Command::Target { json, refresh } => target::run(json, refresh),
+        Command::Thumb { arguments } => {
+            let status = toolchain::Toolchain::find()?.cargo(&arguments).status()?;
+            anyhow::ensure!(status.success(), "cargo {} failed", arguments.join(" "));
+            Ok(())
+        }
+    }
+}

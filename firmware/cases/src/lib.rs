@@ -1,0 +1,71 @@
+//! Control steps on random states: the same source runs on the target, where they are measured, and on the host, whose
+//! digest of all commands the target's must equal.
+#![no_std]
+
+mod digest;
+mod laws;
+mod random;
+
+use controller::Circle;
+use laws::{Following, Tracking, on_circle};
+
+pub use digest::Digest;
+pub use random::Random;
+
+/// States a case is run on.
+pub const STATES: usize = 1024;
+
+/// A law on a path or reference, and the states it is tried on.
+pub trait Case {
+    /// What a step reads.
+    type State;
+    /// What a step returns.
+    type Output;
+
+    /// Draws a state, and sets the law's own memory (ζ, integrals, last command) as at random.
+    fn prepare(&mut self, random: &mut Random) -> Self::State;
+    /// One control step.
+    fn step(&mut self, state: &Self::State) -> Self::Output;
+    /// Feeds every number of the command to the digest.
+    fn digest(output: &Self::Output, digest: &mut Digest);
+}
+
+/// Who is shown every case.
+pub trait Visitor {
+    /// `None` where the law refused the case's parameters.
+    fn visit<C: Case>(&mut self, name: &str, case: Option<C>);
+}
+
+/// Shows `visitor` all cases, one a line.
+pub fn visit_all(visitor: &mut impl Visitor) {
+    let circle = Circle::new(5.0, -10.0).map(|circle| circle.at_speed(1.0));
+    visitor.visit("circle", circle.ok().and_then(|path| Following::new(path, on_circle)));
+    visitor.visit("track", Tracking::new());
+}
+
+/// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after engaging, the second with a last
+/// command to predict from. Returns the digest of all commands.
+pub fn exercise<C: Case>(case: &mut C, mut step: impl FnMut(&mut C, &C::State) -> C::Output) -> Digest {
+    let mut random = Random::new(20);
+    let mut digest = Digest::default();
+    for _ in 0..STATES {
+        let state = case.prepare(&mut random);
+        for _ in 0..2 {
+            C::digest(&step(case, &state), &mut digest);
+        }
+    }
+    digest
+}
+
+/// The digest of square roots: the special values, then every kind of positive number.
+pub fn roots() -> Digest {
+    let mut digest = Digest::default();
+    let special = [0.0, -0.0, f32::from_bits(1), f32::MIN_POSITIVE, 1.0, 2.0, f32::MAX, f32::INFINITY];
+    special.into_iter().for_each(|x| digest.take(fpu::sqrt(x)));
+    let mut random = Random::new(3);
+    for _ in 0..1 << 14 {
+        // 31 random bits below infinity's: all exponents, subnormal numbers among them.
+        digest.take(fpu::sqrt(f32::from_bits((random.bits() >> 1) % f32::INFINITY.to_bits())));
+    }
+    digest
+}

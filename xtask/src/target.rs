@@ -1,0 +1,103 @@
+//! `cargo xtask target`: build, emulate, compare with the host and with the expected values.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context, Result, ensure};
+use cases::{Case, Visitor};
+
+use crate::emulator::{self, MACHINES, Output};
+use crate::image::Image;
+use crate::report::{Case as Row, Extremes, Report};
+use crate::toolchain::{Toolchain, root};
+
+/// Curves given as the zero of functions: the code of the largest is what a flight needs.
+const IMPLICIT: [&str; 3] = ["circle", "ellipse", "bent"];
+
+/// Measures, prints, and compares with the expected values or replaces them.
+pub fn run(json: bool, refresh: bool) -> Result<()> {
+    let image = Image::build(&Toolchain::find()?)?;
+    let outputs = MACHINES.map(|(core, machine)| emulator::bench(machine, &image.path).map(|output| (core, output)));
+    let outputs = outputs.into_iter().collect::<Result<Vec<_>>>()?;
+    let rows = rows(&image, &outputs)?;
+    let report = summary(&image, &rows, &outputs);
+
+    if json {
+        println!("{}", serde_json::to_string(&report)?);
+    } else {
+        println!("{}", crate::report::table(&image, &rows, &report));
+    }
+    ensure!(image.allocators.is_empty(), "the image holds an allocator: {}", image.allocators.join(", "));
+    ensure!(report.no_soft_double, "the image emulates double precision: {}", image.soft_doubles.join(", "));
+    report.check_proofs()?;
+
+    let path = root().join("firmware/bench/expected.json");
+    if refresh {
+        return std::fs::write(&path, serde_json::to_string_pretty(&report)? + "\n")
+            .context("cannot write the expected values");
+    }
+    let text = std::fs::read_to_string(&path)
+        .with_context(|| format!("cannot read {} (--refresh makes it)", path.display()))?;
+    let expected: Report = serde_json::from_str(&text).with_context(|| format!("in {}", path.display()))?;
+    report.check_against(&expected).with_context(|| format!("worse than {} allows", path.display()))
+}
+
+/// Digests of the same cases on the host.
+#[derive(Default)]
+struct Host(BTreeMap<String, u64>);
+
+impl Visitor for Host {
+    fn visit<C: Case>(&mut self, name: &str, case: Option<C>) {
+        if let Some(mut case) = case {
+            self.0.insert(name.to_owned(), cases::exercise(&mut case, C::step).value());
+        }
+    }
+}
+
+/// One row a case, with the costs of the first core.
+fn rows(image: &Image, outputs: &[(&str, Output)]) -> Result<Vec<Row>> {
+    let mut host = Host::default();
+    cases::visit_all(&mut host);
+    let (_, first) = outputs.first().context("there is a machine")?;
+    let row = |(name, measured): &(String, emulator::Measured)| {
+        let stack_bound = image.calls.stack(measured.entry)?;
+        ensure!(
+            measured.stack <= u64::from(stack_bound),
+            "{name} touched {} bytes of stack, but its call graph allows {stack_bound}: the analysis is wrong",
+            measured.stack
+        );
+        let cores = outputs.iter().map(|(core, output)| {
+            let digest = output.cases.iter().find(|(case, _)| case == name).map(|(_, measured)| measured.digest);
+            ((*core).to_owned(), digest.is_some() && digest == host.0.get(name).copied())
+        });
+        Ok(Row {
+            name: name.clone(),
+            instructions: Extremes { best: measured.best, worst: measured.worst },
+            code_bytes: image.calls.code_bytes(&image.calls.reachable(measured.entry)),
+            stack_painted: measured.stack,
+            stack_bound,
+            ram_bytes: measured.ram,
+            identical: cores.collect(),
+        })
+    };
+    first.cases.iter().map(row).collect()
+}
+
+/// The whole in a few numbers.
+fn summary(image: &Image, rows: &[Row], outputs: &[(&str, Output)]) -> Report {
+    let roots = cases::roots().value();
+    Report {
+        instructions: rows.iter().map(|row| (row.name.clone(), row.instructions)).collect(),
+        code_bytes: rows
+            .iter()
+            .filter(|row| IMPLICIT.contains(&&*row.name))
+            .map(|row| row.code_bytes)
+            .max()
+            .unwrap_or(0),
+        ram_bytes: rows.iter().map(|row| row.ram_bytes).max().unwrap_or(0),
+        stack_bytes: rows.iter().map(|row| row.stack_bound).max().unwrap_or(0),
+        bit_identical: rows.iter().all(|row| row.identical.iter().all(|(_, same)| *same))
+            && outputs.iter().all(|(_, output)| output.roots == roots),
+        panic_free: image.panic_free,
+        no_soft_double: image.soft_doubles.is_empty(),
+    }
+}
