@@ -101,3 +101,28 @@ fn summary(image: &Image, rows: &[Row], outputs: &[(&str, Output)]) -> Report {
         no_soft_double: image.soft_doubles.is_empty(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use cases::Digest;
+
+    fn digest(numbers: &[f32]) -> u64 {
+        let mut digest = Digest::default();
+        numbers.iter().for_each(|&number| digest.take(number));
+        digest.value()
+    }
+
+    /// "foob" is a test vector of draft-eastlake-fnv; read as a float it has these bits.
+    #[test]
+    fn the_digest_is_fnv_1a() {
+        assert_eq!(digest(&[f32::from_bits(u32::from_le_bytes(*b"foob"))]), 0xDD12_0E79_0C25_12AF);
+    }
+
+    #[test]
+    fn the_digest_sees_every_bit() {
+        let one = digest(&[1.0, 0.0]);
+        assert_ne!(digest(&[1.0, -0.0]), one);
+        assert_ne!(digest(&[1.0_f32.next_up(), 0.0]), one);
+        assert_ne!(digest(&[0.0, 1.0]), one);
+    }
+}

@@ -29,14 +29,15 @@ pub enum Toolchain {
 impl Toolchain {
     /// The installed target where there is one.
     pub fn find() -> Result<Self> {
-        let installed = print("rustc", &["--print", "target-libdir", "--target", TRIPLE]);
+        let active = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+        let installed = print(&active, &["--print", "target-libdir", "--target", TRIPLE]);
         if installed.is_ok_and(|library| library.is_dir()) {
             return Ok(Self::Rustup);
         }
         let library =
             print(SYSTEM_RUSTC, &["--print", "sysroot"]).map(|root| root.join("lib/rustlib/src/rust/library"));
         if library.is_ok_and(|library| library.is_dir()) {
-            let host = print("rustc", &["--print", "target-libdir"])?;
+            let host = print(&active, &["--print", "target-libdir"])?;
             let linker = host.parent().context("a library folder has a parent")?.join("bin/rust-lld");
             if linker.is_file() {
                 return Ok(Self::System { linker });
