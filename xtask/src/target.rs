@@ -16,6 +16,10 @@ const IMPLICIT: [&str; 3] = ["circle", "ellipse", "bent"];
 /// Measures, prints, and compares with the expected values or replaces them.
 pub fn run(json: bool, refresh: bool) -> Result<()> {
     let image = Image::build(&Toolchain::find()?)?;
+    if !image.panic_free {
+        // Said now, since a panic that happens ends the emulation below.
+        eprintln!("a panic is reachable: the bench links only with its feature reachable-panics");
+    }
     let outputs = MACHINES.map(|(core, machine)| emulator::bench(machine, &image.path).map(|output| (core, output)));
     let outputs = outputs.into_iter().collect::<Result<Vec<_>>>()?;
     let rows = rows(&image, &outputs)?;
