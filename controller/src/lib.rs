@@ -35,14 +35,20 @@
 //! ```
 #![no_std]
 
+pub mod actuator;
+pub mod analytic;
 pub mod compensator;
+pub mod disturbance;
+pub mod dual;
 pub mod envelope;
 pub mod error;
 pub mod follow;
 pub mod gains;
 pub mod lift;
 pub mod lower;
+pub mod model;
 pub mod path;
+pub mod sampler;
 pub mod scalar;
 pub mod series;
 pub mod state;
@@ -50,13 +56,17 @@ pub mod track;
 pub mod vehicle;
 pub mod yaw;
 
-pub use compensator::{Command, Sampling};
+pub use actuator::ActuatorLimits;
+pub use analytic::Analytic;
+pub use compensator::Command;
+pub use disturbance::{Disturbance, ObserverParams};
 pub use envelope::Margins;
 pub use error::OutOfRange;
 pub use follow::{Follower, Gains, SetupError, Solution, Xi};
 pub use gains::{GainError, Pole, place};
 pub use nalgebra::{Matrix3, Vector3};
 pub use path::{Circle, Path};
+pub use sampler::Sampling;
 pub use scalar::Real;
 pub use series::Series;
 pub use state::State;

@@ -51,6 +51,8 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+    /// `self` to a real power; NaN below zero, but for whole exponents.
+    fn powf(self, exponent: Self) -> Self;
     /// Neither infinite nor NaN.
     fn is_finite(self) -> bool;
 
@@ -122,6 +124,10 @@ impl Real for f32 {
         libm::tanhf(self)
     }
     #[inline]
+    fn powf(self, exponent: Self) -> Self {
+        libm::powf(self, exponent)
+    }
+    #[inline]
     fn is_finite(self) -> bool {
         Self::is_finite(self)
     }
@@ -163,6 +169,10 @@ impl Real for f64 {
     #[inline]
     fn tanh(self) -> Self {
         libm::tanh(self)
+    }
+    #[inline]
+    fn powf(self, exponent: Self) -> Self {
+        libm::pow(self, exponent)
     }
     #[inline]
     fn is_finite(self) -> bool {

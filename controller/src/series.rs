@@ -5,6 +5,8 @@
 //! differentiation; Griewank and Walther, *Evaluating Derivatives*, ch. 13). Lengths are compile-time constants and every
 //! loop has constant bounds, so the cost is constant.
 //!
+//! Powers and transcendental functions are those of [`Analytic`](crate::analytic::Analytic).
+//!
 //! **Coefficients, not derivatives:** the k-th derivative is k! times the k-th coefficient, see [`Series::derivative`].
 
 // Indices here run over compile-time bounds below N; iterator chains in their place hide the convolutions.
@@ -82,69 +84,6 @@ impl<T: Real, const N: usize> Series<T, N> {
             }
         }
         Self(c)
-    }
-
-    /// f², half the work of f·f.
-    #[inline]
-    pub fn square(&self) -> Self {
-        let a = &self.0;
-        let mut c = [T::zero(); N];
-        for k in 0..N {
-            let mut half = T::zero();
-            for j in 0..k.div_ceil(2) {
-                half += a[j] * a[k - j];
-            }
-            c[k] = half + half;
-            if k % 2 == 0 {
-                c[k] += a[k / 2] * a[k / 2];
-            }
-        }
-        Self(c)
-    }
-
-    /// f^α for a constant α, given f₀^α and 1/f₀: from f·y˙ = α·f˙·y.
-    #[inline]
-    fn power_from(&self, alpha: f64, value: T, inverse: T) -> Self {
-        let mut y = [T::zero(); N];
-        y[0] = value;
-        for k in 1..N {
-            let mut sum = T::zero();
-            for j in 1..=k {
-                let weight = (alpha * j as f64 - (k - j) as f64) / k as f64;
-                sum += self.0[j] * y[k - j] * T::lit(weight);
-            }
-            y[k] = sum * inverse;
-        }
-        Self(y)
-    }
-
-    /// 1/f, f₀ ≠ 0.
-    #[inline]
-    pub fn recip(&self) -> Self {
-        let inverse = T::one() / self.0[0];
-        let mut y = [T::zero(); N];
-        y[0] = inverse;
-        for k in 1..N {
-            let mut sum = T::zero();
-            for j in 1..=k {
-                sum += self.0[j] * y[k - j];
-            }
-            y[k] = -sum * inverse;
-        }
-        Self(y)
-    }
-
-    /// √f, f₀ > 0.
-    #[inline]
-    pub fn sqrt(&self) -> Self {
-        self.power_from(0.5, self.0[0].sqrt(), T::one() / self.0[0])
-    }
-
-    /// 1/√f, f₀ > 0.
-    #[inline]
-    pub fn rsqrt(&self) -> Self {
-        let inverse = T::one() / self.0[0];
-        self.power_from(-0.5, self.0[0].sqrt() * inverse, inverse)
     }
 }
 
@@ -242,5 +181,13 @@ impl<T: Real, const N: usize> Mul<T> for Series<T, N> {
     #[inline]
     fn mul(self, constant: T) -> Self {
         Self(self.0.map(|c| c * constant))
+    }
+}
+
+impl<T: Real, const N: usize> Div<T> for Series<T, N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, constant: T) -> Self {
+        self * (T::one() / constant)
     }
 }

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::analytic::Analytic;
 use crate::error::OutOfRange;
 use crate::lift::PositionSeries;
 use crate::path::{ConstantSpeed, Curve, FixedYaw, Located, Profiled};
