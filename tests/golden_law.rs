@@ -2,7 +2,7 @@
 
 use controller::follow::{self, Gains};
 use controller::track::{self, Reference, TrackGains};
-use controller::{Circle, OutOfRange, Path, Real, State, Vehicle, VehicleParams};
+use controller::{Circle, Disturbance, OutOfRange, Path, Real, State, Vehicle, VehicleParams};
 use tests::golden::{self, Follow, LawMeta, relative_error};
 
 /// Relative errors of every vector, quantity by quantity.
@@ -93,6 +93,7 @@ fn follow_errors<T: Real, P: Path<T>>(file: &str, path: impl Fn(&[T]) -> Result<
                 &state(&vector.x),
                 &vector.zeta.map(T::lit),
                 &vector.integral.map(T::lit),
+                &Disturbance::none(),
             );
             let torque = solution.command.torque.map(T::to_f64);
             let xi = [&solution.xi.h1[..], &solution.xi.h2, &solution.xi.h3, &solution.xi.h4].concat();
@@ -114,7 +115,7 @@ fn track_errors<T: Real>() -> Errors {
     for vector in &file.vectors {
         let reference = Reference::circle(T::lit(5.0), T::lit(-10.0), T::one(), T::lit(vector.t));
         let zeta = vector.zeta.map(T::lit);
-        let solution = track::law(&vehicle(&vector.par), &gains, &reference, &state(&vector.x), &zeta);
+        let solution = track::law(&vehicle(&vector.par), &gains, &reference, &state(&vector.x), &zeta, &Disturbance::none());
         let torque = solution.command.torque.map(T::to_f64);
         let [p1, p2, p3] = solution.xi.position;
         let xi = [&p1[..], &p2, &p3, &solution.xi.yaw].concat();

@@ -5,13 +5,16 @@
 
 use nalgebra::Vector3;
 
-use crate::compensator::{Command, Compensator, Sampling};
+use crate::actuator::ActuatorLimits;
+use crate::compensator::Command;
+use crate::disturbance::{Disturbance, ObserverParams};
 use crate::envelope::Margins;
 use crate::error::OutOfRange;
 use crate::gains::{self, GainError};
 use crate::lift::lift;
 use crate::lower::lower;
 use crate::path::Path;
+use crate::sampler::{Ahead, Sampler, Sampling};
 use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -70,7 +73,7 @@ pub struct Solution<T, X> {
     pub margins: Margins<T>,
 }
 
-/// Evaluates the law at `state`, ζ and the integrals ξ̃ = ∫(h1, h2, h3) as they are, without looking ahead.
+/// Evaluates the law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance as they are, without looking ahead.
 #[inline]
 pub fn law<T: Real, P: Path<T> + ?Sized>(
     vehicle: &Vehicle<T>,
@@ -79,8 +82,9 @@ pub fn law<T: Real, P: Path<T> + ?Sized>(
     state: &State<T>,
     zeta: &[T; 4],
     integral: &[T; 3],
+    disturbance: &Disturbance<T>,
 ) -> Solution<T, Xi<T>> {
-    let lift = lift(vehicle, state, zeta);
+    let lift = lift(vehicle, state, zeta, disturbance);
     let yaw = Yaw::of(state);
     let outputs = path.outputs(&lift.position());
     let [s1, s2] = &outputs.surfaces;
@@ -113,7 +117,7 @@ pub fn law<T: Real, P: Path<T> + ?Sized>(
     Solution {
         command: Command {
             thrust: lift.thrust(vehicle),
-            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2),
+            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2, &disturbance.torque),
         },
         u_zeta: position_6.z,
         xi,
@@ -167,21 +171,20 @@ impl<T: Real> core::fmt::Display for SetupError<T> {
 
 impl<T: Real> core::error::Error for SetupError<T> {}
 
-/// The path-following controller: the law at a fixed rate, with its compensator and integrals.
+/// The path-following controller: the law at a fixed rate.
 #[derive(Clone, Debug)]
 pub struct Follower<T, P> {
-    vehicle: Vehicle<T>,
     path: P,
     gains: Gains<T>,
-    compensator: Compensator<T>,
     integral: [T; 3],
+    sampler: Sampler<T>,
 }
 
 impl<T: Real, P: Path<T>> Follower<T, P> {
-    /// A controller at hover (ζ = 0), with gains that have been found stable.
+    /// A controller at hover (ζ = 0), with gains that have been found stable; without limits or observers, as the paper's.
     pub fn new(vehicle: Vehicle<T>, path: P, gains: Gains<T>, sampling: Sampling<T>) -> Result<Self, SetupError<T>> {
         gains.check()?;
-        let compensator = Compensator::new(&vehicle, sampling)?;
+        let sampler = Sampler::new(vehicle, &sampling)?;
         let mut gains = gains;
         if sampling.look_ahead {
             // ξ̃ is kept for the sample and the law acts h/2 later: ξ̃(h/2) = ξ̃ + (h/2) h_i.
@@ -190,29 +193,42 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
             gains.k2[0] += gains.integral[1] * lead;
             gains.k3[0] += gains.integral[2] * lead;
         }
-        Ok(Self { vehicle, path, gains, compensator, integral: [T::zero(); 3] })
+        Ok(Self { path, gains, integral: [T::zero(); 3], sampler })
     }
 
-    /// Starts from a stated ζ with the integrals at zero. Hover is ζ = 0.
+    /// With disturbance observers, reset.
+    pub fn with_observer(mut self, params: &ObserverParams<T>) -> Result<Self, SetupError<T>> {
+        self.sampler.set_observer(params)?;
+        Ok(self)
+    }
+
+    /// With limits on what is commanded.
+    pub fn with_limits(mut self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
+        self.sampler.set_limits(limits)?;
+        Ok(self)
+    }
+
+    /// Starts from a stated ζ with integrals and disturbances at zero. Hover is ζ = 0.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        self.compensator.start(&self.vehicle, state, zeta);
+        self.sampler.start(state, zeta);
         self.integral = [T::zero(); 3];
     }
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust: the first command's thrust and
-    /// its first two derivatives continue it.
+    /// its first two derivatives continue it. Integrals and disturbances start at zero.
     pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.compensator.engage(&self.vehicle, state, applied);
+        self.sampler.engage(state, applied);
         self.integral = [T::zero(); 3];
     }
 
     /// The command for the coming hold, from the state sampled now. Call once every period.
     #[inline]
-    pub fn step(&mut self, state: &State<T>) -> Solution<T, Xi<T>> {
-        let (state, zeta) = self.compensator.ahead(&self.vehicle, state);
-        let solution = law(&self.vehicle, &mut self.path, &self.gains, &state, &zeta, &self.integral);
-        self.compensator.advance(solution.u_zeta, solution.command);
-        let period = self.compensator.period();
+    pub fn step(&mut self, sampled: &State<T>) -> Solution<T, Xi<T>> {
+        let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
+        let vehicle = self.sampler.vehicle();
+        let mut solution = law(vehicle, &mut self.path, &self.gains, &state, &zeta, &self.integral, &disturbance);
+        solution.command = self.sampler.hold(sampled, &solution.command, solution.u_zeta, &solution.margins);
+        let period = self.sampler.period();
         let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
         for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
             *integral += period * h;
@@ -222,7 +238,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
 
     /// ζ at the next sample.
     pub fn zeta(&self) -> &[T; 4] {
-        self.compensator.zeta()
+        self.sampler.zeta()
     }
 
     /// ξ̃ = ∫(h1, h2, h3) up to the next sample.
@@ -230,8 +246,13 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
         &self.integral
     }
 
+    /// The disturbances found up to the last sample.
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        self.sampler.disturbance()
+    }
+
     /// The vehicle as the law knows it.
     pub fn vehicle(&self) -> &Vehicle<T> {
-        &self.vehicle
+        self.sampler.vehicle()
     }
 }

@@ -1,10 +1,11 @@
 //! Lift: from the state and ζ to the payload's Taylor series, p to p⁽⁵⁾, with one line of algebra an order.
 //!
-//! With λ the payload's specific force along the rod, s = λ q, κ = T/(m_Q L) and c = M/(m_Q L), model (1) reads, free of charts,
+//! With λ the payload's specific force along the rod, s = λ q, κ = T/(m_Q L) and c = M/(m_Q L), model (1) reads, free of charts
+//! and with the [disturbances](crate::disturbance) d and δ (zero in the paper),
 //!
 //! ```text
-//! v̇ = g e3 + s,               s3 = ζ1 − g
-//! q̈ = κ b3 + c s,             κ (b3·q) = −(|q̇|² + c λ)
+//! v̇ = g e3 + d + s,           s3 = ζ1 − g − d3
+//! q̈ = κ b3 + c s + δ,         κ (b3·q) = −(|q̇|² + c λ + δ·q)
 //! ```
 //!
 //! Each time derivative of these lines is linear in the highest derivative it brings: λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1},
@@ -13,6 +14,7 @@
 
 use nalgebra::Vector3;
 
+use crate::disturbance::Disturbance;
 use crate::scalar::Real;
 use crate::series::Series;
 use crate::state::State;
@@ -65,7 +67,8 @@ impl<T: Real> Lift<T> {
 ///
 /// Needs |`rod`| = 1, `rod_rate` ⊥ `rod` and an orthonormal attitude.
 #[inline]
-pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4]) -> Lift<T> {
+pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], disturbance: &Disturbance<T>) -> Lift<T> {
+    let (d, delta) = (&disturbance.payload, &disturbance.rod);
     let two = T::lit(2.0);
     let three = T::lit(3.0);
     let c = vehicle.coupling;
@@ -82,16 +85,17 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4]) -> L
     let per_b3_rod = T::one() / b3_rod;
 
     // Order 0: specific force, thrust, rod acceleration.
-    let lambda = (zeta1 - gravity) * per_q3;
+    let lambda = (zeta1 - gravity - d.z) * per_q3;
     let s = q * lambda;
-    let kappa = -(w.dot(w) + c * lambda) * per_b3_rod;
-    let rod_2 = b3 * kappa + s * c;
+    let kappa = -(w.dot(w) + c * lambda + delta.dot(q)) * per_b3_rod;
+    let rod_2 = b3 * kappa + s * c + delta;
 
     // Order 1. Here and below the third component of s⁽ⁿ⁾ is ζ itself, free of rounding.
     let lambda_1 = (zeta2 - lambda * w.z) * per_q3;
     let mut s_1 = q * lambda_1 + w * lambda;
     s_1.z = zeta2;
-    let kappa_dot = -(two * w.dot(&rod_2) + c * lambda_1 + kappa * (b3_dot.dot(q) + b3.dot(w))) * per_b3_rod;
+    let kappa_dot =
+        -(w.dot(&(rod_2 * two + delta)) + c * lambda_1 + kappa * (b3_dot.dot(q) + b3.dot(w))) * per_b3_rod;
     let rod_3 = b3 * kappa_dot + b3_dot * kappa + s_1 * c;
 
     // Orders 2 and 3 of the specific force need no more of the rod than q⃛.
@@ -102,7 +106,7 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4]) -> L
     let mut s_3 = q * lambda_3 + (w * lambda_2 + rod_2 * lambda_1) * three + rod_3 * lambda;
     s_3.z = zeta4;
 
-    let acceleration = Vector3::new(s.x, s.y, zeta1);
+    let acceleration = Vector3::new(s.x + d.x, s.y + d.y, zeta1);
     Lift {
         derivatives: [state.position, state.velocity, acceleration, s_1, s_2, s_3],
         lambda: [lambda, lambda_1, lambda_2, lambda_3],

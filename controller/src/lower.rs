@@ -19,7 +19,7 @@ use crate::vehicle::Vehicle;
 use crate::yaw::Yaw;
 
 /// The torque τ in body axes, N·m, that with u_ζ = p⁽⁶⁾·e3 gives the payload the sixth derivative `position_6`
-/// (N, m/s⁶) and the UAV the yaw acceleration `yaw_2`, rad/s².
+/// (N, m/s⁶) and the UAV the yaw acceleration `yaw_2`, rad/s², against `disturbing_torque`.
 #[inline]
 pub fn lower<T: Real>(
     vehicle: &Vehicle<T>,
@@ -28,6 +28,7 @@ pub fn lower<T: Real>(
     yaw: &Yaw<T>,
     position_6: &Vector3<T>,
     yaw_2: T,
+    disturbing_torque: &Vector3<T>,
 ) -> Vector3<T> {
     let three = T::lit(3.0);
     let four = T::lit(4.0);
@@ -56,5 +57,5 @@ pub fn lower<T: Real>(
 
     let omega_dot = Vector3::new(omega_dot_1, omega_dot_2, omega_dot_3);
     let inertia = &vehicle.inertia;
-    inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega))
+    inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)) - disturbing_torque
 }

@@ -4,12 +4,15 @@
 
 use nalgebra::Vector3;
 
-use crate::compensator::{Command, Compensator, Sampling};
+use crate::actuator::ActuatorLimits;
+use crate::compensator::Command;
+use crate::disturbance::{Disturbance, ObserverParams};
 use crate::envelope::Margins;
 use crate::follow::{SetupError, Solution, dot};
 use crate::gains::{self, GainError};
 use crate::lift::{PositionSeries, lift};
 use crate::lower::lower;
+use crate::sampler::{Ahead, Sampler, Sampling};
 use crate::scalar::Real;
 use crate::series::Series;
 use crate::state::State;
@@ -76,7 +79,7 @@ pub struct TrackXi<T> {
     pub yaw: [T; 2],
 }
 
-/// Evaluates the tracking law at `state` and ζ as they are.
+/// Evaluates the tracking law at `state`, ζ and a known disturbance as they are.
 #[inline]
 pub fn law<T: Real>(
     vehicle: &Vehicle<T>,
@@ -84,8 +87,9 @@ pub fn law<T: Real>(
     reference: &Reference<T>,
     state: &State<T>,
     zeta: &[T; 4],
+    disturbance: &Disturbance<T>,
 ) -> Solution<T, TrackXi<T>> {
-    let lift = lift(vehicle, state, zeta);
+    let lift = lift(vehicle, state, zeta, disturbance);
     let yaw = Yaw::of(state);
 
     let [x, y, z] = &reference.position;
@@ -104,7 +108,7 @@ pub fn law<T: Real>(
     Solution {
         command: Command {
             thrust: lift.thrust(vehicle),
-            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2),
+            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2, &disturbance.torque),
         },
         u_zeta: position_6.z,
         xi: TrackXi { position: [p1, p2, p3], yaw: [yaw.angle, yaw.rate] },
@@ -131,49 +135,64 @@ fn derivative_error<T: Real>(p: &[T; 6], reference: &Series<T, 7>) -> [T; 6] {
     error
 }
 
-/// The trajectory-tracking controller: the law at a fixed rate, with its compensator.
+/// The trajectory-tracking controller: the law at a fixed rate.
 #[derive(Clone, Debug)]
 pub struct Tracker<T> {
-    vehicle: Vehicle<T>,
     gains: TrackGains<T>,
-    compensator: Compensator<T>,
+    sampler: Sampler<T>,
 }
 
 impl<T: Real> Tracker<T> {
-    /// A controller at hover (ζ = 0), with gains that have been found stable.
+    /// A controller at hover (ζ = 0), with gains that have been found stable; without limits or observers.
     pub fn new(vehicle: Vehicle<T>, gains: TrackGains<T>, sampling: Sampling<T>) -> Result<Self, SetupError<T>> {
         gains.check()?;
-        let compensator = Compensator::new(&vehicle, sampling)?;
-        Ok(Self { vehicle, gains, compensator })
+        Ok(Self { gains, sampler: Sampler::new(vehicle, &sampling)? })
     }
 
-    /// Starts from a stated ζ. Hover is ζ = 0.
+    /// With disturbance observers, reset.
+    pub fn with_observer(mut self, params: &ObserverParams<T>) -> Result<Self, SetupError<T>> {
+        self.sampler.set_observer(params)?;
+        Ok(self)
+    }
+
+    /// With limits on what is commanded.
+    pub fn with_limits(mut self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
+        self.sampler.set_limits(limits)?;
+        Ok(self)
+    }
+
+    /// Starts from a stated ζ with disturbances at zero. Hover is ζ = 0.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        self.compensator.start(&self.vehicle, state, zeta);
+        self.sampler.start(state, zeta);
     }
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
     pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.compensator.engage(&self.vehicle, state, applied);
+        self.sampler.engage(state, applied);
     }
 
     /// The command for the coming hold, from the state sampled now and the reference about now. Call once every period.
     #[inline]
-    pub fn step(&mut self, state: &State<T>, reference: &Reference<T>) -> Solution<T, TrackXi<T>> {
-        let reference = reference.shift(self.compensator.horizon());
-        let (state, zeta) = self.compensator.ahead(&self.vehicle, state);
-        let solution = law(&self.vehicle, &self.gains, &reference, &state, &zeta);
-        self.compensator.advance(solution.u_zeta, solution.command);
+    pub fn step(&mut self, sampled: &State<T>, reference: &Reference<T>) -> Solution<T, TrackXi<T>> {
+        let reference = reference.shift(self.sampler.horizon());
+        let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
+        let mut solution = law(self.sampler.vehicle(), &self.gains, &reference, &state, &zeta, &disturbance);
+        solution.command = self.sampler.hold(sampled, &solution.command, solution.u_zeta, &solution.margins);
         solution
     }
 
     /// ζ at the next sample.
     pub fn zeta(&self) -> &[T; 4] {
-        self.compensator.zeta()
+        self.sampler.zeta()
+    }
+
+    /// The disturbances found up to the last sample.
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        self.sampler.disturbance()
     }
 
     /// The vehicle as the law knows it.
     pub fn vehicle(&self) -> &Vehicle<T> {
-        &self.vehicle
+        self.sampler.vehicle()
     }
 }

@@ -43,6 +43,8 @@ pub struct Vehicle<T> {
     pub(crate) kappa_per_thrust: T,
     /// c = M/(m_Q L), 1/m.
     pub(crate) coupling: T,
+    /// 1/M, 1/kg.
+    pub(crate) per_total_mass: T,
     /// 1/c.
     pub(crate) inverse_coupling: T,
     /// J, kg·m².
@@ -70,6 +72,7 @@ impl<T: Real> Vehicle<T> {
             thrust_per_kappa: arm,
             kappa_per_thrust: T::one() / arm,
             coupling: total / arm,
+            per_total_mass: T::one() / total,
             inverse_coupling: arm / total,
             inertia: Vector3::from(params.inertia),
             inverse_inertia: Vector3::from(params.inertia.map(|j| T::one() / j)),

@@ -1,0 +1,139 @@
+//! The actuators as the law knows them: limits, a known latency and a known first-order lag.
+
+use crate::compensator::Command;
+use crate::error::OutOfRange;
+use crate::scalar::Real;
+use nalgebra::Vector3;
+
+/// What may be commanded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ActuatorLimits<T> {
+    /// Least thrust, N.
+    pub min_thrust: T,
+    /// Largest thrust, N.
+    pub max_thrust: T,
+    /// Largest torque about each body axis, N·m, either way.
+    pub max_torque: [T; 3],
+}
+
+impl<T: Real> ActuatorLimits<T> {
+    /// None to speak of: ±10⁶ N and N·m.
+    pub fn none() -> Self {
+        let far = T::lit(1e6);
+        Self { min_thrust: -far, max_thrust: far, max_torque: [far; 3] }
+    }
+
+    pub(crate) fn check(&self) -> Result<(), OutOfRange<T>> {
+        OutOfRange::check("min_thrust", self.min_thrust, -1e6, 1e6)?;
+        OutOfRange::check("max_thrust", self.max_thrust, self.min_thrust.to_f64(), 1e6)?;
+        let [t1, t2, t3] = self.max_torque;
+        OutOfRange::check("max_torque[0]", t1, 0.0, 1e6)?;
+        OutOfRange::check("max_torque[1]", t2, 0.0, 1e6)?;
+        OutOfRange::check("max_torque[2]", t3, 0.0, 1e6)
+    }
+
+    /// The nearest allowed command.
+    #[inline]
+    pub fn limit(&self, command: &Command<T>) -> Command<T> {
+        let [t1, t2, t3] = self.max_torque;
+        let torque = &command.torque;
+        Command {
+            thrust: command.thrust.clamp(self.min_thrust, self.max_thrust),
+            torque: Vector3::new(torque.x.clamp(-t1, t1), torque.y.clamp(-t2, t2), torque.z.clamp(-t3, t3)),
+        }
+    }
+}
+
+/// Longest latency the actuators' model can hold, in control periods.
+pub const MAX_DELAY: usize = 31;
+
+/// A delay line of whole periods, then a first-order lag: what the commands do on their way to thrust and torque.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Actuators<T> {
+    /// The last commands; `newest` is where the last one stands.
+    line: [Command<T>; MAX_DELAY + 1],
+    newest: usize,
+    delay: usize,
+    /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
+    decay: T,
+    /// Share of the newest command in the mean over the law's look ahead.
+    share: T,
+    /// What acts now: before and after the command that takes effect at this sample.
+    before: Command<T>,
+    after: Command<T>,
+}
+
+impl<T: Real> Actuators<T> {
+    /// With `latency` (rounded to whole periods) and `lag`, s; the law looks `horizon` s ahead.
+    pub(crate) fn new(period: T, latency: T, lag: T, horizon: T, command: Command<T>) -> Result<Self, OutOfRange<T>> {
+        let periods = latency / period + T::lit(0.5);
+        OutOfRange::check("latency in periods", periods, 0.0, (MAX_DELAY + 1) as f64 - 1e-3)?;
+        let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
+        let has_lag = lag > T::zero();
+        let decay = if has_lag { (-period / lag).exp() } else { T::zero() };
+        // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then the line's commands pass from
+        // the applied to the newest.
+        let acting = horizon - latency;
+        let settled = if has_lag { lag * (T::one() - (-acting / lag).exp()) } else { T::zero() };
+        let share =
+            if delay > 0 || has_lag { (acting - settled + latency * T::lit(0.5)) / horizon } else { T::zero() };
+        let share = if horizon > T::zero() { share } else { T::zero() };
+        let mut actuators =
+            Self { line: [command; MAX_DELAY + 1], newest: 0, delay, decay, share, before: command, after: command };
+        actuators.reset(command);
+        Ok(actuators)
+    }
+
+    /// `command` has been on for long.
+    pub(crate) fn reset(&mut self, command: Command<T>) {
+        self.line = [command; MAX_DELAY + 1];
+        self.before = command;
+        self.after = command;
+    }
+
+    /// What acted up to this sample.
+    #[inline]
+    pub(crate) fn before(&self) -> &Command<T> {
+        &self.before
+    }
+
+    /// What acts from this sample on; known once the coming command has been [pushed](Self::push).
+    #[inline]
+    pub(crate) fn after(&self) -> &Command<T> {
+        &self.after
+    }
+
+    /// The mean over the law's look ahead, as far as it is known before the coming command.
+    #[inline]
+    pub(crate) fn mean(&self) -> Command<T> {
+        let newest = self.line.get(self.newest).unwrap_or(&self.before);
+        blend(&self.before, newest, self.share)
+    }
+
+    /// Sends the command for the coming hold.
+    #[inline]
+    pub(crate) fn push(&mut self, command: Command<T>) {
+        self.newest = (self.newest + 1) % (MAX_DELAY + 1);
+        if let Some(slot) = self.line.get_mut(self.newest) {
+            *slot = command;
+        }
+        let acting = (self.newest + MAX_DELAY + 1 - self.delay) % (MAX_DELAY + 1);
+        let delayed = self.line.get(acting).copied().unwrap_or(command);
+        if self.decay > T::zero() {
+            self.after = self.before;
+            self.before = blend(&delayed, &self.after, self.decay);
+        } else {
+            self.after = delayed;
+            self.before = delayed;
+        }
+    }
+}
+
+/// `from` + (`to` − `from`) · `share`.
+#[inline]
+fn blend<T: Real>(from: &Command<T>, to: &Command<T>, share: T) -> Command<T> {
+    Command {
+        thrust: from.thrust + (to.thrust - from.thrust) * share,
+        torque: from.torque + (to.torque - from.torque) * share,
+    }
+}

@@ -1,0 +1,176 @@
+//! What stands between a law in continuous time and a computer: the compensator's ζ, the look ahead, the actuators' model
+//! and the disturbance observers, stepped once a control period.
+//!
+//! Thrust and torque are held between samples, so a law evaluated at the sample acts half a period late, and every error is first order
+//! in the period. Here it is evaluated for the middle of the coming hold, at the state and ζ predicted from what is being applied, which
+//! makes it second order. A known latency and a known rotor lag are absorbed by the same prediction: it looks that much further.
+
+use nalgebra::Vector3;
+
+use crate::actuator::{ActuatorLimits, Actuators};
+use crate::compensator::{Command, continuing, propagate};
+use crate::disturbance::{Disturbance, Observer, ObserverParams};
+use crate::envelope::Margins;
+use crate::error::OutOfRange;
+use crate::lift::lift;
+use crate::model::Model;
+use crate::scalar::Real;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+
+/// When the law is called and when its command acts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sampling<T> {
+    /// Control period h, s, 10⁻⁴ to 0.2.
+    pub period: T,
+    /// Known time from the state's sample to its command's start, s, at most [`MAX_DELAY`](crate::actuator::MAX_DELAY) periods.
+    pub latency: T,
+    /// Known time constant of the rotors' first-order lag, s, 0 to 0.5.
+    pub rotor_lag: T,
+    /// Evaluate the law for when its command acts: `latency` + `rotor_lag` + h/2 ahead. Off, it is evaluated at the sample.
+    pub look_ahead: bool,
+}
+
+impl<T: Real> Sampling<T> {
+    /// Every `period` s, no latency, no lag, looking ahead.
+    pub fn every(period: T) -> Self {
+        Self { period, latency: T::zero(), rotor_lag: T::zero(), look_ahead: true }
+    }
+
+    fn check(&self) -> Result<(), OutOfRange<T>> {
+        OutOfRange::check("period", self.period, 1e-4, 0.2)?;
+        OutOfRange::check("latency", self.latency, 0.0, 0.5)?;
+        OutOfRange::check("rotor_lag", self.rotor_lag, 0.0, 0.5)
+    }
+
+    fn horizon(&self) -> T {
+        if self.look_ahead { self.latency + self.rotor_lag + self.period * T::lit(0.5) } else { T::zero() }
+    }
+}
+
+/// Where a law is to be evaluated: state, ζ and disturbance at the instant its command acts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ahead<T> {
+    pub(crate) state: State<T>,
+    pub(crate) zeta: [T; 4],
+    pub(crate) disturbance: Disturbance<T>,
+}
+
+/// The memory of a sampled law.
+#[derive(Clone, Debug)]
+pub struct Sampler<T> {
+    vehicle: Vehicle<T>,
+    period: T,
+    horizon: T,
+    zeta: [T; 4],
+    u_zeta: T,
+    limits: ActuatorLimits<T>,
+    actuators: Actuators<T>,
+    observer: Observer<T>,
+}
+
+impl<T: Real> Sampler<T> {
+    /// At hover (ζ = 0), without limits or observers.
+    pub(crate) fn new(vehicle: Vehicle<T>, sampling: &Sampling<T>) -> Result<Self, OutOfRange<T>> {
+        sampling.check()?;
+        let Sampling { period, latency, rotor_lag, .. } = *sampling;
+        let horizon = sampling.horizon();
+        let hover = Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() };
+        Ok(Self {
+            vehicle,
+            period,
+            horizon,
+            zeta: [T::zero(); 4],
+            u_zeta: T::zero(),
+            limits: ActuatorLimits::none(),
+            actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
+            observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
+        })
+    }
+
+    pub(crate) fn set_limits(&mut self, limits: ActuatorLimits<T>) -> Result<(), OutOfRange<T>> {
+        limits.check()?;
+        self.limits = limits;
+        Ok(())
+    }
+
+    pub(crate) fn set_observer(&mut self, params: &ObserverParams<T>) -> Result<(), OutOfRange<T>> {
+        self.observer = Observer::new(&self.vehicle, params, self.period)?;
+        Ok(())
+    }
+
+    /// Starts from a stated ζ; until the first command the thrust is (9) and the torque zero.
+    pub(crate) fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
+        let thrust = lift(&self.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.vehicle);
+        self.reset(state, zeta, Command { thrust, torque: Vector3::zeros() });
+    }
+
+    /// Takes over from whatever applied `applied` until now, with the ζ that continues it.
+    pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
+        let zeta = continuing(&self.vehicle, state, &applied, &Disturbance::none());
+        self.reset(state, zeta, applied);
+    }
+
+    fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
+        self.zeta = zeta;
+        self.u_zeta = T::zero();
+        self.actuators.reset(applied);
+        let acceleration = Model::at(&self.vehicle, state).acceleration(&applied, &Disturbance::none());
+        self.observer.reset(state, &acceleration);
+    }
+
+    /// Ends a period with the state sampled now: corrects the observers and looks ahead.
+    #[inline]
+    pub(crate) fn ahead(&mut self, sampled: &State<T>) -> Ahead<T> {
+        let model = Model::at(&self.vehicle, sampled);
+        let until_now = model.acceleration(self.actuators.before(), self.observer.estimate());
+        self.observer.correct(sampled, &until_now);
+        let disturbance = *self.observer.estimate();
+        let state = model.ahead(&model.acceleration(&self.actuators.mean(), &disturbance), self.horizon);
+        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.horizon), disturbance }
+    }
+
+    /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
+    ///
+    /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference, so that the compensator stands for the motion
+    /// that the applied thrust gives.
+    #[inline]
+    pub(crate) fn hold(
+        &mut self,
+        sampled: &State<T>,
+        command: &Command<T>,
+        u_zeta: T,
+        margins: &Margins<T>,
+    ) -> Command<T> {
+        let applied = self.limits.limit(command);
+        self.actuators.push(applied);
+        let model = Model::at(&self.vehicle, sampled);
+        self.observer.predict(&model.acceleration(self.actuators.after(), self.observer.estimate()));
+        self.zeta = propagate(&self.zeta, u_zeta, self.period);
+        let missing = command.thrust - applied.thrust;
+        self.zeta[0] += missing * margins.q3 * margins.q_b3 * self.vehicle.per_total_mass;
+        self.u_zeta = u_zeta;
+        applied
+    }
+
+    /// ζ at the next sample.
+    pub(crate) fn zeta(&self) -> &[T; 4] {
+        &self.zeta
+    }
+
+    pub(crate) fn disturbance(&self) -> &Disturbance<T> {
+        self.observer.estimate()
+    }
+
+    pub(crate) fn vehicle(&self) -> &Vehicle<T> {
+        &self.vehicle
+    }
+
+    pub(crate) fn period(&self) -> T {
+        self.period
+    }
+
+    pub(crate) fn horizon(&self) -> T {
+        self.horizon
+    }
+}
