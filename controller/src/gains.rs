@@ -89,7 +89,7 @@ pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainE
             Pole::Real(re) => (re, 1, -re, T::zero()),
             Pole::Pair { re, im } => (re, 2, -(re + re), re * re + im * im),
         };
-        if !(re < T::zero()) || !c.is_finite() {
+        if re >= T::zero() || !re.is_finite() || !c.is_finite() {
             return Err(GainError::UnstablePole { re });
         }
         // Multiply by s + b, or by s² + b s + c.

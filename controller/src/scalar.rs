@@ -191,8 +191,7 @@ fn sin_cos_f32(x: f32) -> (f32, f32) {
     const ROUND: f32 = 12_582_912.0;
     const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
 
-    // Written so that a NaN fails it too.
-    if !(x.abs() <= RANGE) {
+    if !(-RANGE..=RANGE).contains(&x) {
         return (f32::NAN, f32::NAN);
     }
     let shifted = x * core::f32::consts::FRAC_2_PI + ROUND;
@@ -203,12 +202,10 @@ fn sin_cos_f32(x: f32) -> (f32, f32) {
     let z = r * r;
     let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * r + r;
     let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
-    match quadrant & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    // Odd quadrants exchange the two, and signs go − for sine in 2 and 3, for cosine in 1 and 2: no branch.
+    let (sin, cos) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    let negate = |value: f32, when: u32| f32::from_bits(value.to_bits() ^ (when & 2) << 30);
+    (negate(sin, quadrant), negate(cos, quadrant.wrapping_add(1)))
 }
 
 #[cfg(test)]
