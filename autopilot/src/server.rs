@@ -1,0 +1,220 @@
+//! The link side: what each message does, and what is answered.
+
+use core::fmt::Write;
+
+use link::dialect::*;
+use link::{MavMessage, Rejected};
+
+use crate::control::{Autopilot, Drive};
+
+/// What the caller has to do after a message.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Next {
+    /// Nothing.
+    Nothing,
+    /// Lockstep: make the control step of this frame.
+    Step(LOAD_STATE_DATA),
+    /// Reset the controller.
+    Reboot,
+}
+
+/// Counts and answers the link's messages.
+#[derive(Clone, Debug)]
+pub struct Server {
+    bad_frames: u32,
+    reported: LoadMode,
+}
+
+impl Default for Server {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Server {
+    /// Nothing received, nothing reported.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { bad_frames: 0, reported: LoadMode::LOAD_MODE_OFF }
+    }
+
+    /// What the controller says when it has started: it speaks first, since bytes sent to it before are lost.
+    pub fn greet(&self, autopilot: &Autopilot, send: &mut impl FnMut(MavMessage)) {
+        send(Self::heartbeat(autopilot));
+        let boot = autopilot.boot();
+        if boot.by_watchdog {
+            send(status(MavSeverity::MAV_SEVERITY_CRITICAL, "reset by the watchdog"));
+        }
+        if boot.internal_clock {
+            send(status(MavSeverity::MAV_SEVERITY_WARNING, "no crystal: on the internal oscillator"));
+        }
+    }
+
+    /// The sign of life.
+    #[must_use]
+    pub fn heartbeat(autopilot: &Autopilot) -> MavMessage {
+        let mode = autopilot.mode();
+        let mut base_mode = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8;
+        if autopilot.is_armed() {
+            base_mode |= MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED as u8;
+        }
+        if autopilot.drive() == Drive::Lockstep {
+            base_mode |= MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED as u8;
+        }
+        let system_status = match mode {
+            LoadMode::LOAD_MODE_OFF => MavState::MAV_STATE_STANDBY,
+            LoadMode::LOAD_MODE_READY | LoadMode::LOAD_MODE_FLYING => MavState::MAV_STATE_ACTIVE,
+            LoadMode::LOAD_MODE_HOLD | LoadMode::LOAD_MODE_SAFE => MavState::MAV_STATE_CRITICAL,
+        };
+        MavMessage::HEARTBEAT(HEARTBEAT_DATA {
+            custom_mode: mode as u32,
+            mavtype: MavType::MAV_TYPE_QUADROTOR as u8,
+            autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC as u8,
+            base_mode,
+            system_status: system_status as u8,
+            mavlink_version: MINOR_MAVLINK_VERSION,
+        })
+    }
+
+    /// All counters; `lost_bytes` is the board's.
+    #[must_use]
+    pub fn counters(&self, autopilot: &Autopilot, lost_bytes: u32) -> MavMessage {
+        MavMessage::LOAD_COUNTERS(LOAD_COUNTERS_DATA {
+            bad_frames: self.bad_frames,
+            lost_bytes,
+            ..autopilot.counters_message()
+        })
+    }
+
+    /// A text when the mode has changed since the last call.
+    pub fn mode_change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
+        let mode = autopilot.mode();
+        if mode == self.reported {
+            return None;
+        }
+        self.reported = mode;
+        let info = MavSeverity::MAV_SEVERITY_INFO;
+        let critical = MavSeverity::MAV_SEVERITY_CRITICAL;
+        Some(match mode {
+            LoadMode::LOAD_MODE_OFF => status(info, "disarmed"),
+            LoadMode::LOAD_MODE_READY => status(info, "armed, waiting for a state"),
+            LoadMode::LOAD_MODE_FLYING => status(info, "the law flies"),
+            LoadMode::LOAD_MODE_HOLD => status(MavSeverity::MAV_SEVERITY_WARNING, "no usable state: holding the last command"),
+            LoadMode::LOAD_MODE_SAFE => status(critical, "no usable state: safe command"),
+        })
+    }
+
+    /// Acts on what the decoder found.
+    pub fn handle(
+        &mut self,
+        received: Result<MavMessage, Rejected>,
+        time_ns: u64,
+        autopilot: &mut Autopilot,
+        send: &mut impl FnMut(MavMessage),
+    ) -> Next {
+        let Ok(message) = received else {
+            self.bad_frames = self.bad_frames.wrapping_add(1);
+            return Next::Nothing;
+        };
+        match message {
+            MavMessage::LOAD_STATE(frame) => {
+                if autopilot.drive() == Drive::Lockstep {
+                    return Next::Step(frame);
+                }
+                autopilot.receive(&frame);
+            }
+            MavMessage::PARAM_REQUEST_READ(request) => {
+                let index = usize::try_from(request.param_index)
+                    .ok()
+                    .or_else(|| crate::Parameters::index(link::text_of(&*request.param_id)));
+                match index.and_then(|index| value(autopilot, index)) {
+                    Some(answer) => send(answer),
+                    None => send(status(MavSeverity::MAV_SEVERITY_WARNING, "no such parameter")),
+                }
+            }
+            MavMessage::PARAM_REQUEST_LIST(_) => {
+                for index in 0..crate::Parameters::COUNT {
+                    value(autopilot, index).into_iter().for_each(&mut *send);
+                }
+            }
+            MavMessage::PARAM_SET(request) => set(&request, autopilot, send),
+            MavMessage::COMMAND_LONG(request) => return command(&request, autopilot, send),
+            MavMessage::TIMESYNC(request) if request.tc1 == 0 => {
+                send(MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: time_ns.cast_signed(), ts1: request.ts1 }));
+            }
+            _ => {}
+        }
+        Next::Nothing
+    }
+}
+
+/// A parameter's current value.
+fn value(autopilot: &Autopilot, index: usize) -> Option<MavMessage> {
+    let (entry, value) = autopilot.parameters().at(index)?;
+    Some(MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+        param_value: value,
+        param_count: crate::Parameters::COUNT as u16,
+        param_index: index as u16,
+        param_id: link::name(entry.name),
+        param_type: MavParamType::MAV_PARAM_TYPE_REAL32 as u8,
+    }))
+}
+
+fn set(request: &PARAM_SET_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) {
+    let name = link::text_of(&*request.param_id);
+    let warn = |reason: &str| {
+        let mut text = heapless::String::<50>::new();
+        // What doesn't fit is cut: the reason comes first.
+        let _ = write!(text, "{reason}: {name}");
+        status(MavSeverity::MAV_SEVERITY_WARNING, &text)
+    };
+    match autopilot.parameters_mut() {
+        None => send(warn("not while armed")),
+        Some(parameters) => match parameters.set_by_name(name, request.param_value) {
+            Ok(_) => {}
+            Err(crate::Refused::Unknown) => send(warn("no such parameter")),
+            Err(crate::Refused::OutOfRange) => send(warn("out of range")),
+        },
+    }
+    crate::Parameters::index(name).and_then(|index| value(autopilot, index)).into_iter().for_each(send);
+}
+
+fn command(request: &COMMAND_LONG_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) -> Next {
+    let (mut result, mut next) = (MavResult::MAV_RESULT_ACCEPTED, Next::Nothing);
+    if request.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16 {
+        if request.param1 < 0.5 {
+            autopilot.disarm();
+        } else if let Err(refused) = autopilot.arm() {
+            let mut text = heapless::String::<50>::new();
+            let _ = write!(Cut(&mut text), "{refused}");
+            send(status(MavSeverity::MAV_SEVERITY_WARNING, &text));
+            result = MavResult::MAV_RESULT_DENIED;
+        }
+    } else if request.command == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16 {
+        if autopilot.is_armed() || request.param1 != 1.0 {
+            result = MavResult::MAV_RESULT_DENIED;
+        } else {
+            next = Next::Reboot;
+        }
+    } else {
+        result = MavResult::MAV_RESULT_UNSUPPORTED;
+    }
+    send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command: request.command, result: result as u8 }));
+    next
+}
+
+fn status(severity: MavSeverity, text: &str) -> MavMessage {
+    MavMessage::STATUSTEXT(STATUSTEXT_DATA { severity: severity as u8, text: link::text(text) })
+}
+
+/// Writes as much as fits.
+struct Cut<'a>(&'a mut heapless::String<50>);
+
+impl Write for Cut<'_> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        for character in text.chars() {
+            self.0.push(character).map_err(|_| core::fmt::Error)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! Frames out of a stream of bytes of which some may be lost or wrong.
+
+use mavlink_core::{MAV_STX_V2, MavlinkVersion, Message, MessageData, calculate_crc};
+
+use crate::dialect::*;
+
+/// Start marker, nine bytes of header, checksum.
+const HEADER: usize = 10;
+const CHECKSUM: usize = 2;
+const LONGEST: usize = HEADER + u8::MAX as usize + CHECKSUM;
+
+/// Why a frame was not taken. The search goes on from the byte after its marker, so a frame inside is still found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rejected {
+    /// The message is not in the dialect, or is longer than the dialect has it, or asks for a feature unknown here.
+    Header {
+        /// The message's number.
+        id: u32,
+    },
+    /// Wrong checksum, or a value outside its enumeration: noise on the line, or another version of the dialect.
+    Checksum {
+        /// The message's number.
+        id: u32,
+    },
+}
+
+/// Finds frames, in bounded memory: never more than one frame is kept.
+///
+/// A wrong length can't make it wait longer than the longest form of the message it claims to be.
+#[derive(Clone, Debug)]
+pub struct Decoder {
+    buffer: [u8; LONGEST],
+    length: usize,
+}
+
+impl Default for Decoder {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Decoder {
+    /// Nothing received yet.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self { buffer: [0; LONGEST], length: 0 }
+    }
+
+    /// Takes one byte; calls `sink` for each message that it completes and each candidate that it shows to be none.
+    pub fn push(&mut self, byte: u8, mut sink: impl FnMut(Result<MavMessage, Rejected>)) {
+        if let Some(slot) = self.buffer.get_mut(self.length) {
+            *slot = byte;
+            self.length += 1;
+        }
+        // Only a rejected candidate leaves bytes to be looked at again.
+        while let Some(outcome) = self.examine() {
+            sink(outcome);
+        }
+    }
+
+    /// Forgets a frame that has begun, as after the line was down.
+    pub fn reset(&mut self) {
+        self.length = 0;
+    }
+
+    /// The first candidate's fate, once it is known; its bytes are then gone.
+    fn examine(&mut self) -> Option<Result<MavMessage, Rejected>> {
+        let received = self.buffer.get(..self.length)?;
+        let start = received.iter().position(|&byte| byte == MAV_STX_V2).unwrap_or(self.length);
+        if start > 0 {
+            self.drop_first(start);
+        }
+        let received = self.buffer.get(..self.length)?;
+        let (&[_, payload, incompatible, _, _, _, _, id0, id1, id2], _) = received.split_first_chunk::<HEADER>()?;
+        let id = u32::from_le_bytes([id0, id1, id2, 0]);
+        let payload = usize::from(payload);
+        let known = incompatible == 0 && longest_payload(id).is_some_and(|longest| (1..=longest).contains(&payload));
+        if !known {
+            self.drop_first(1);
+            return Some(Err(Rejected::Header { id }));
+        }
+        let end = HEADER + payload;
+        let body = received.get(HEADER..end)?;
+        let &[low, high] = received.get(end..end + CHECKSUM)? else { return None };
+        let right = calculate_crc(received.get(1..end)?, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high]);
+        let message = if right { MavMessage::parse(MavlinkVersion::V2, id, body).ok() } else { None };
+        match message {
+            Some(message) => {
+                self.drop_first(end + CHECKSUM);
+                Some(Ok(message))
+            }
+            None => {
+                self.drop_first(1);
+                Some(Err(Rejected::Checksum { id }))
+            }
+        }
+    }
+
+    fn drop_first(&mut self, count: usize) {
+        self.buffer.copy_within(count..self.length, 0);
+        self.length -= count;
+    }
+}
+
+/// The whole payload of each message, before trailing zeros are left out.
+fn longest_payload(id: u32) -> Option<usize> {
+    macro_rules! lengths {
+        ($($data:ident),*) => {
+            match id {
+                $(<$data as MessageData>::ID => Some(<$data as MessageData>::ENCODED_LEN),)*
+                _ => None,
+            }
+        };
+    }
+    lengths!(
+        HEARTBEAT_DATA,
+        PARAM_REQUEST_READ_DATA,
+        PARAM_REQUEST_LIST_DATA,
+        PARAM_VALUE_DATA,
+        PARAM_SET_DATA,
+        COMMAND_LONG_DATA,
+        COMMAND_ACK_DATA,
+        TIMESYNC_DATA,
+        STATUSTEXT_DATA,
+        LOAD_STATE_DATA,
+        LOAD_COMMAND_DATA,
+        LOAD_TELEMETRY_DATA,
+        LOAD_COUNTERS_DATA
+    )
+}
