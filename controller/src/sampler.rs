@@ -43,8 +43,14 @@ impl<T: Real> Sampling<T> {
         OutOfRange::check("rotor_lag", self.rotor_lag, 0.0, 0.5)
     }
 
+    /// Half a period where the law looks ahead.
+    fn half_hold(&self) -> T {
+        if self.look_ahead { self.period * T::lit(0.5) } else { T::zero() }
+    }
+
+    /// From the sample to when the law is evaluated for.
     fn horizon(&self) -> T {
-        if self.look_ahead { self.latency + self.rotor_lag + self.period * T::lit(0.5) } else { T::zero() }
+        if self.look_ahead { self.latency + self.rotor_lag + self.half_hold() } else { T::zero() }
     }
 }
 
@@ -61,7 +67,10 @@ pub(crate) struct Ahead<T> {
 pub struct Sampler<T> {
     vehicle: Vehicle<T>,
     period: T,
+    half_hold: T,
     horizon: T,
+    /// ζ when the coming command begins to act: `horizon` − `half_hold` after the sample. What lies between needs no
+    /// prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
     limits: ActuatorLimits<T>,
@@ -79,6 +88,7 @@ impl<T: Real> Sampler<T> {
         Ok(Self {
             vehicle,
             period,
+            half_hold: sampling.half_hold(),
             horizon,
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
@@ -127,7 +137,7 @@ impl<T: Real> Sampler<T> {
         self.observer.correct(sampled, &until_now);
         let disturbance = *self.observer.estimate();
         let state = model.ahead(&model.acceleration(&self.actuators.mean(), &disturbance), self.horizon);
-        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.horizon), disturbance }
+        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold), disturbance }
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
@@ -153,7 +163,7 @@ impl<T: Real> Sampler<T> {
         applied
     }
 
-    /// ζ at the next sample.
+    /// ζ when the next command begins to act.
     pub(crate) fn zeta(&self) -> &[T; 4] {
         &self.zeta
     }

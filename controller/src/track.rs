@@ -181,7 +181,7 @@ impl<T: Real> Tracker<T> {
         solution
     }
 
-    /// ζ at the next sample.
+    /// ζ when the next command begins to act (the next sample, without latency and lag).
     pub fn zeta(&self) -> &[T; 4] {
         self.sampler.zeta()
     }
