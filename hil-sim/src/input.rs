@@ -1,0 +1,76 @@
+//! Fields given by a user: read with the path to each, so that an error names the field that caused it.
+
+use controller::{OutOfRange, Real};
+use serde::de::{DeserializeOwned, Deserializer};
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+
+/// A field that cannot be used, and why.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{field}: {message}")]
+pub struct Invalid {
+    /// Path to the field, as in `controller.poles[0][2]`.
+    pub field: String,
+    /// What is wrong with it.
+    pub message: String,
+}
+
+impl Invalid {
+    /// An error of one field.
+    pub fn new(field: impl Into<String>, message: impl Display) -> Self {
+        Self { field: field.into(), message: message.to_string() }
+    }
+
+    /// A parameter that the controller refused, inside the table `at`.
+    pub fn out_of_range<T: Real>(at: &str, error: OutOfRange<T>) -> Self {
+        let OutOfRange { field, value, min, max } = error;
+        Self::new(join(at, field), format_args!("{value} is outside {min} to {max}"))
+    }
+}
+
+/// Path of `field` inside the table `at`; either may be empty.
+#[must_use]
+pub fn join(at: &str, field: &str) -> String {
+    match (at, field) {
+        ("", _) => field.to_owned(),
+        (_, "") => at.to_owned(),
+        _ if field.starts_with('[') => format!("{at}{field}"),
+        _ => format!("{at}.{field}"),
+    }
+}
+
+/// Reads `value`, the field `at`, as a `T`.
+///
+/// # Errors
+/// [`Invalid`] with the path to what does not fit.
+pub fn read<'de, T: DeserializeOwned>(at: &str, value: impl Deserializer<'de>) -> Result<T, Invalid> {
+    serde_path_to_error::deserialize(value).map_err(|error| {
+        let path = error.path().to_string();
+        // The root shows as ".", a part that has no name as "?".
+        let path = path.trim_end_matches('?').trim_end_matches('.');
+        Invalid::new(join(at, path), error.inner())
+    })
+}
+
+/// `value` if it lies in `range`, which a NaN does not.
+///
+/// # Errors
+/// [`Invalid`] with the field, the value and the range.
+pub fn within<N: PartialOrd + Display + Copy>(field: &str, value: N, range: RangeInclusive<N>) -> Result<N, Invalid> {
+    if range.contains(&value) {
+        Ok(value)
+    } else {
+        Err(Invalid::new(field, format_args!("{value} is outside {} to {}", range.start(), range.end())))
+    }
+}
+
+/// `values` if each lies within ±`limit`.
+///
+/// # Errors
+/// [`Invalid`] with the element, its value and the range.
+pub fn all_within<const N: usize>(field: &str, values: [f64; N], limit: f64) -> Result<[f64; N], Invalid> {
+    for (index, value) in values.into_iter().enumerate() {
+        within(&format!("{field}[{index}]"), value, -limit..=limit)?;
+    }
+    Ok(values)
+}

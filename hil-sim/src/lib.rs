@@ -1,0 +1,19 @@
+//! Simulator of a slung load and its path-following law: plant, scenarios, flights, reports, and an independent witness.
+
+pub mod batch;
+pub mod course;
+pub mod deviation;
+pub mod eval;
+pub mod formula;
+pub mod input;
+pub mod integrate;
+pub mod jet;
+pub mod metrics;
+pub mod multibody;
+pub mod pilot;
+pub mod plant;
+pub mod reference;
+pub mod report;
+pub mod run;
+pub mod scenario;
+pub mod witness;

@@ -1,0 +1,145 @@
+//! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
+
+use controller::envelope::Margins;
+use controller::{Command, Follower, Real, Sampling, SetupError, State, Tracker, Vehicle, VehicleParams};
+
+use crate::course::{ReferenceSpec, Route};
+use crate::plant::Input;
+use crate::scenario::{ControllerSpec, Law};
+
+/// A controller at work in the scalar `T`.
+pub enum Pilot<T> {
+    /// Path following.
+    Follow(Box<Follower<T, Route<T>>>),
+    /// Trajectory tracking, with its reference.
+    Track(Box<Tracker<T>>, ReferenceSpec),
+}
+
+/// One answer of a pilot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Thrust and torque for the coming hold.
+    pub input: Input,
+    /// ζ at the sample, m/s²⁺ᵏ.
+    pub zeta: [f64; 4],
+    /// ξ̃ = ∫(h1, h2, h3) up to the sample; zero for the tracking law, which has none.
+    pub integral: [f64; 3],
+    /// Outputs and derivatives, padded with zeros to the longer law's 20.
+    pub xi: [f64; 20],
+    /// Wanted highest derivatives of the outputs.
+    pub nu: [f64; 4],
+    /// Distances from the singularities.
+    pub margins: Margins<f64>,
+}
+
+/// The vehicle in another scalar.
+#[must_use]
+pub fn cast<T: Real>(params: &VehicleParams<f64>) -> VehicleParams<T> {
+    VehicleParams {
+        payload_mass: T::lit(params.payload_mass),
+        uav_mass: T::lit(params.uav_mass),
+        rod_length: T::lit(params.rod_length),
+        inertia: params.inertia.map(T::lit),
+        gravity: T::lit(params.gravity),
+    }
+}
+
+/// The follower's gains in another scalar.
+#[must_use]
+pub fn cast_gains<T: Real>(gains: &controller::Gains<f64>) -> controller::Gains<T> {
+    controller::Gains {
+        k1: gains.k1.map(T::lit),
+        k2: gains.k2.map(T::lit),
+        k3: gains.k3.map(T::lit),
+        k4: gains.k4.map(T::lit),
+        integral: gains.integral.map(T::lit),
+    }
+}
+
+/// The tracker's gains in another scalar.
+#[must_use]
+pub fn cast_track_gains<T: Real>(gains: &controller::TrackGains<f64>) -> controller::TrackGains<T> {
+    controller::TrackGains { position: gains.position.map(|row| row.map(T::lit)), yaw: gains.yaw.map(T::lit) }
+}
+
+impl<T: Real> Pilot<T> {
+    /// The controller that `spec` describes, at hover.
+    ///
+    /// # Errors
+    /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains unstable.
+    pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
+        let vehicle = Vehicle::new(cast(&spec.vehicle))?;
+        let sampling = Sampling { look_ahead: spec.look_ahead, ..Sampling::every(T::lit(1.0 / spec.rate_hz)) };
+        Ok(match &spec.law {
+            Law::Follow { path, gains } => {
+                Self::Follow(Box::new(Follower::new(vehicle, path.build()?, cast_gains(gains), sampling)?))
+            }
+            Law::Track { reference, gains } => {
+                Self::Track(Box::new(Tracker::new(vehicle, cast_track_gains(gains), sampling)?), *reference)
+            }
+        })
+    }
+
+    /// Starts from a stated ζ, with integrals at zero.
+    pub fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        let (state, zeta) = (state.cast(), zeta.map(T::lit));
+        match self {
+            Self::Follow(follower) => follower.start(&state, zeta),
+            Self::Track(tracker, _) => tracker.start(&state, zeta),
+        }
+    }
+
+    /// The command for the hold that begins at `t_s`, from the state sampled then.
+    #[inline]
+    pub fn step(&mut self, state: &State<f64>, t_s: f64) -> Decision {
+        let state = state.cast();
+        let (zeta, integral) = match self {
+            Self::Follow(follower) => (*follower.zeta(), *follower.integral()),
+            Self::Track(tracker, _) => (*tracker.zeta(), [T::zero(); 3]),
+        };
+        let mut xi = [0.0; 20];
+        let mut fill = |parts: &[&[T]]| {
+            for (slot, value) in xi.iter_mut().zip(parts.iter().copied().flatten()) {
+                *slot = value.to_f64();
+            }
+        };
+        let (command, nu, margins) = match self {
+            Self::Follow(follower) => {
+                let solution = follower.step(&state);
+                fill(&[&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
+                (solution.command, solution.nu, solution.margins)
+            }
+            Self::Track(tracker, reference) => {
+                let solution = tracker.step(&state, &reference.at(t_s));
+                let [p1, p2, p3] = &solution.xi.position;
+                fill(&[p1, p2, p3, &solution.xi.yaw]);
+                (solution.command, solution.nu, solution.margins)
+            }
+        };
+        Decision {
+            input: input(&command),
+            zeta: zeta.map(T::to_f64),
+            integral: integral.map(T::to_f64),
+            xi,
+            nu: nu.map(T::to_f64),
+            margins: margins_f64(&margins),
+        }
+    }
+}
+
+/// A command as the plant takes it.
+pub fn input<T: Real>(command: &Command<T>) -> Input {
+    Input { thrust: command.thrust.to_f64(), torque: command.torque.map(T::to_f64).into() }
+}
+
+/// Margins as f64.
+pub fn margins_f64<T: Real>(margins: &Margins<T>) -> Margins<f64> {
+    Margins {
+        q3: margins.q3.to_f64(),
+        q_b3: margins.q_b3.to_f64(),
+        lambda: margins.lambda.to_f64(),
+        kappa: margins.kappa.to_f64(),
+        path_det: margins.path_det.to_f64(),
+        cos_phi_squared: margins.cos_phi_squared.to_f64(),
+    }
+}

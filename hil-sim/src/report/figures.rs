@@ -1,0 +1,239 @@
+//! The figures, drawn from the logs: the paper's from runs that say which panel they are, a sheet for any other run.
+
+use plotters::prelude::*;
+
+use super::plot::{Area, COLOURS, Curve, Drawn, Track, plan, space, time, time_log};
+use super::{Figure, ReportError};
+use crate::batch::Outcome;
+use crate::plant::{Input, index};
+use crate::run::Sample;
+
+/// Most points drawn of a curve: more than a figure's pixels across.
+const POINTS: usize = 1500;
+
+/// A figure yet to be drawn.
+struct Plan<'a> {
+    name: String,
+    caption: String,
+    runs: Vec<&'a Outcome>,
+    size: (u32, u32),
+    panels: fn(&Area<'_>, &[&Outcome]) -> Drawn,
+}
+
+/// Draws every figure that these flights belong to.
+pub fn draw(outcomes: &[Outcome]) -> Result<Vec<Figure>, ReportError> {
+    plans(outcomes)
+        .into_iter()
+        .map(|plan| {
+            let error = |message| ReportError::Figure { name: plan.name.clone(), message };
+            let svg = render(&plan).map_err(|e| error(e.to_string()))?;
+            Ok(Figure { name: plan.name, caption: plan.caption, svg })
+        })
+        .collect()
+}
+
+fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
+    let of = |number: &str| -> Vec<&Outcome> {
+        outcomes
+            .iter()
+            .filter(|outcome| {
+                outcome
+                    .scenario
+                    .figure
+                    .as_deref()
+                    .is_some_and(|figure| figure.trim_end_matches(char::is_alphabetic) == number)
+            })
+            .collect()
+    };
+    let figure = |number, caption: &str, size, panels, runs| Plan {
+        name: format!("fig{number}"),
+        caption: format!("Fig. {number}. {caption}"),
+        runs,
+        size,
+        panels,
+    };
+    let mut plans = vec![
+        figure(
+            2,
+            "An obstacle stops the vehicle at 5 s (dashed line) and releases it at once. Path following stays on its path; \
+             trajectory tracking leaves it to catch up with a reference that ran on.",
+            (1000, 780),
+            obstacle as fn(&Area<'_>, &[&Outcome]) -> Drawn,
+            of("2"),
+        ),
+        figure(
+            3,
+            "From rest 4 m outside the circle: the payload's way in space, n3 down.",
+            (1000, 520),
+            ways,
+            of("3"),
+        ),
+        figure(4, "The flights of Fig. 3 over time: distance from the circle, thrust and torque.", (1000, 860), inputs, of("3")),
+        figure(
+            5,
+            "The law is told 0.25 kg, the payload has 0.5 kg: without integral action the payload flies a larger circle, \
+             lower and slower; with it all three errors go to zero.",
+            (1000, 1100),
+            wrong_mass,
+            of("5"),
+        ),
+        figure(
+            6,
+            "The law is told 0.75 kg, the payload has 0.5 kg: smaller circle, higher and faster; with integral action all \
+             three errors go to zero.",
+            (1000, 1100),
+            wrong_mass,
+            of("6"),
+        ),
+    ];
+    plans.retain(|plan| !plan.runs.is_empty());
+    plans.extend(outcomes.iter().filter(|outcome| outcome.scenario.figure.is_none()).map(|outcome| Plan {
+        name: outcome.scenario.name.clone(),
+        caption: format!("{}. {}", outcome.scenario.name, outcome.scenario.title),
+        runs: vec![outcome],
+        size: (1000, 1160),
+        panels: sheet,
+    }));
+    plans
+}
+
+fn render(plan: &Plan<'_>) -> Result<String, Box<dyn std::error::Error>> {
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, plan.size).into_drawing_area();
+        area.fill(&WHITE)?;
+        (plan.panels)(&area, &plan.runs)?;
+        area.present()?;
+    }
+    Ok(svg)
+}
+
+fn obstacle(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let (above, below) = area.split_vertically(500);
+    for (part, run) in above.split_evenly((1, runs.len())).iter().zip(runs) {
+        plan(part, &panel_title(run), &circle(run), &tracks(&[run], runs))?;
+    }
+    time_log(&below, "d_C, m", 1e-7, &curves(runs, distance), &marks(runs))
+}
+
+fn ways(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let mut panels: Vec<String> = runs.iter().map(|run| panel(run)).collect();
+    panels.dedup();
+    for (part, letter) in area.split_evenly((1, panels.len())).iter().zip(&panels) {
+        let shown: Vec<&Outcome> = runs.iter().copied().filter(|run| panel(run) == *letter).collect();
+        space(part, &panel_title(shown[0]), &circle(shown[0]), &tracks(&shown, runs))?;
+    }
+    Ok(())
+}
+
+fn inputs(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let parts = area.split_evenly((3, 1));
+    time_log(&parts[0], "d_C, m", 1e-4, &curves(runs, distance), &[])?;
+    time(&parts[1], "T, N", &curves(runs, |_, sample| command(sample).map(|input| input.thrust)), &[])?;
+    time(&parts[2], "torque, N m", &curves(runs, |_, sample| command(sample).map(torque)), &[])
+}
+
+fn wrong_mass(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let (above, below) = area.split_vertically(460);
+    let halves = above.split_evenly((1, 2));
+    space(&halves[0], "In space", &circle(runs[0]), &tracks(runs, runs))?;
+    plan(&halves[1], "From above", &circle(runs[0]), &tracks(runs, runs))?;
+    let parts = below.split_evenly((3, 1));
+    time(&parts[0], "radius error, m", &curves(runs, |run, s| against_circle(run, s).map(|e| e[0])), &[])?;
+    time(&parts[1], "p3 error, m", &curves(runs, |run, s| against_circle(run, s).map(|e| e[1])), &[])?;
+    time(&parts[2], "speed error, m/s", &curves(runs, |run, s| against_circle(run, s).map(|e| e[2])), &[])
+}
+
+fn sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let (above, below) = area.split_vertically(460);
+    let halves = above.split_evenly((1, 2));
+    space(&halves[0], "In space", &circle(runs[0]), &tracks(runs, runs))?;
+    plan(&halves[1], "From above", &circle(runs[0]), &tracks(runs, runs))?;
+    let parts = below.split_evenly((3, 1));
+    let marks = marks(runs);
+    time_log(&parts[0], "d_C, m", 1e-5, &curves(runs, distance), &marks)?;
+    time(&parts[1], "T, N", &curves(runs, |_, sample| command(sample).map(|input| input.thrust)), &marks)?;
+    time(&parts[2], "torque, N m", &curves(runs, |_, sample| command(sample).map(torque)), &marks)
+}
+
+fn panel(run: &Outcome) -> String {
+    run.scenario.figure.clone().unwrap_or_default()
+}
+
+fn panel_title(run: &Outcome) -> String {
+    let law = match run.scenario.controller.law.name() {
+        "track" => "trajectory tracking",
+        _ => "path following",
+    };
+    format!("{} {law}", panel(run))
+}
+
+fn circle(run: &Outcome) -> Vec<[f64; 3]> {
+    run.scenario.controller.law.outline(180)
+}
+
+/// The samples that are drawn.
+fn drawn(run: &Outcome) -> impl Iterator<Item = &Sample> {
+    let every = run.flight.log.len().div_ceil(POINTS).max(1);
+    run.flight.log.iter().step_by(every)
+}
+
+/// Each run has the colour of its place among `all`.
+fn colour(run: &Outcome, all: &[&Outcome]) -> RGBColor {
+    let place = all.iter().position(|other| other.scenario.name == run.scenario.name).unwrap_or(0);
+    COLOURS[place % COLOURS.len()]
+}
+
+fn tracks(runs: &[&Outcome], all: &[&Outcome]) -> Vec<Track> {
+    runs.iter()
+        .map(|run| Track {
+            label: run.scenario.name.clone(),
+            points: drawn(run).map(position).collect(),
+            colour: colour(run, all),
+        })
+        .collect()
+}
+
+fn curves(runs: &[&Outcome], value: fn(&Outcome, &Sample) -> Option<f64>) -> Vec<Curve> {
+    runs.iter()
+        .map(|run| Curve {
+            label: run.scenario.name.clone(),
+            points: drawn(run).filter_map(|sample| Some((sample.t_s, value(run, sample)?))).collect(),
+            colour: colour(run, runs),
+        })
+        .collect()
+}
+
+/// When obstacles stop and release.
+fn marks(runs: &[&Outcome]) -> Vec<f64> {
+    let mut marks: Vec<f64> = runs
+        .iter()
+        .filter_map(|run| run.scenario.obstacle)
+        .flat_map(|obstacle| [obstacle.at_s, obstacle.at_s + obstacle.hold_s])
+        .collect();
+    marks.sort_by(f64::total_cmp);
+    marks.dedup();
+    marks
+}
+
+fn position(sample: &Sample) -> [f64; 3] {
+    std::array::from_fn(|axis| sample.x[index::POSITION + axis])
+}
+
+fn distance(run: &Outcome, sample: &Sample) -> Option<f64> {
+    Some(run.scenario.controller.law.distance(position(sample)))
+}
+
+fn command(sample: &Sample) -> Option<&Input> {
+    sample.decision.as_ref().map(|decision| &decision.input)
+}
+
+fn torque(input: &Input) -> f64 {
+    input.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt()
+}
+
+/// Errors of radius (m), p3 (m) and speed (m/s), where a horizontal circle is flown.
+fn against_circle(run: &Outcome, sample: &Sample) -> Option<[f64; 3]> {
+    let circle = run.scenario.controller.law.circle()?;
+    Some(crate::metrics::circle_errors(&sample.x, circle))
+}

@@ -1,0 +1,37 @@
+//! The CSV file of a flight: one line a logged sample, SI units and radians, empty where there is no command.
+
+use crate::batch::Outcome;
+use crate::plant::index;
+
+const COLUMNS: [&str; 38] = [
+    "t_s", "p1", "p2", "p3", "alpha", "beta", "phi", "theta", "psi", "v1", "v2", "v3", "alpha_dot", "beta_dot", "omega1",
+    "omega2", "omega3", "d_c", "thrust", "torque1", "torque2", "torque3", "zeta1", "zeta2", "zeta3", "zeta4", "integral1",
+    "integral2", "integral3", "nu1", "nu2", "nu3", "nu4", "q3", "q_b3", "lambda", "kappa", "path_det",
+];
+
+/// The log as CSV.
+pub fn csv(outcome: &Outcome) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(COLUMNS)?;
+    let law = &outcome.scenario.controller.law;
+    for sample in &outcome.flight.log {
+        let position = std::array::from_fn(|axis| sample.x[index::POSITION + axis]);
+        let mut line = Vec::with_capacity(COLUMNS.len());
+        line.push(sample.t_s);
+        line.extend(sample.x);
+        line.push(law.distance(position));
+        if let Some(decision) = &sample.decision {
+            let margins = &decision.margins;
+            line.push(decision.input.thrust);
+            line.extend(decision.input.torque);
+            line.extend(decision.zeta);
+            line.extend(decision.integral);
+            line.extend(decision.nu);
+            line.extend([margins.q3, margins.q_b3, margins.lambda, margins.kappa, margins.path_det]);
+        }
+        let filled = line.iter().map(f64::to_string);
+        let empty = std::iter::repeat_n(String::new(), COLUMNS.len() - line.len());
+        writer.write_record(filled.chain(empty))?;
+    }
+    writer.into_inner().map_err(|error| error.into_error().into())
+}

@@ -1,0 +1,85 @@
+//! What is left of flights: a table, CSV files, figures, one HTML page, and a summary for programs.
+
+mod figures;
+mod html;
+mod log;
+mod plot;
+mod summary;
+mod table;
+
+pub use table::table;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::batch::Outcome;
+use crate::reference::Reference;
+
+/// A drawn figure.
+pub struct Figure {
+    /// File name without ending.
+    pub name: String,
+    /// What it shows.
+    pub caption: String,
+    /// The drawing.
+    pub svg: String,
+}
+
+/// A report that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A file could not be written.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A figure could not be drawn.
+    #[error("figure {name}: {message}")]
+    Figure {
+        /// The figure.
+        name: String,
+        /// Why.
+        message: String,
+    },
+    /// A log could not be encoded.
+    #[error("log of {name}: {error}")]
+    Log {
+        /// The scenario.
+        name: String,
+        /// Why.
+        error: csv::Error,
+    },
+}
+
+/// Writes all files of a report into `folder`, each complete or not at all, and returns the page's path.
+///
+/// # Errors
+/// [`ReportError`] names the file or figure.
+pub fn write(folder: &Path, outcomes: &[Outcome], reference: &Reference) -> Result<PathBuf, ReportError> {
+    std::fs::create_dir_all(folder).map_err(|error| ReportError::File { path: folder.to_owned(), error })?;
+    for outcome in outcomes {
+        let name = &outcome.scenario.name;
+        let text = log::csv(outcome).map_err(|error| ReportError::Log { name: name.clone(), error })?;
+        write_file(&folder.join(format!("{name}.csv")), &text)?;
+    }
+    let figures = figures::draw(outcomes)?;
+    for figure in &figures {
+        write_file(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
+    }
+    write_file(&folder.join("summary.json"), summary::json(outcomes, reference).as_bytes())?;
+    let page = folder.join("report.html");
+    write_file(&page, html::page(outcomes, reference, &figures).as_bytes())?;
+    Ok(page)
+}
+
+/// Writes beside the file first and then renames, so that whatever happens no half-written file has its name.
+fn write_file(path: &Path, content: &[u8]) -> Result<(), ReportError> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    std::fs::write(&partial, content)
+        .and_then(|()| std::fs::rename(&partial, path))
+        .map_err(|error| ReportError::File { path: path.to_owned(), error })
+}

@@ -1,0 +1,229 @@
+//! Panels of a figure: a view in space, a plan, and curves over time.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use std::ops::Range;
+
+/// A part of a figure to draw on.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Result of drawing.
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// Colours that stay apart in print and for the colour-blind (Okabe and Ito).
+pub const COLOURS: [RGBColor; 4] =
+    [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
+const GREY: RGBColor = RGBColor(120, 120, 120);
+const FONT: &str = "sans-serif";
+
+/// A payload's way through space.
+pub struct Track {
+    /// What the legend says.
+    pub label: String,
+    /// Positions in N, m.
+    pub points: Vec<[f64; 3]>,
+    /// Of the line.
+    pub colour: RGBColor,
+}
+
+/// A quantity over time.
+pub struct Curve {
+    /// What the legend says.
+    pub label: String,
+    /// Time (s) and value.
+    pub points: Vec<(f64, f64)>,
+    /// Of the line.
+    pub colour: RGBColor,
+}
+
+/// Least and largest of `values`, with a margin of 5 %, and not narrower than `least`.
+fn range(values: impl Iterator<Item = f64>, least: f64) -> Range<f64> {
+    let (low, high) = values
+        .filter(|value| value.is_finite())
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return 0.0..least;
+    }
+    let (centre, half) = (0.5 * (low + high), (0.525 * (high - low)).max(0.5 * least));
+    centre - half..centre + half
+}
+
+fn widened(range: &Range<f64>, width: f64) -> Range<f64> {
+    let centre = 0.5 * (range.start + range.end);
+    centre - 0.5 * width..centre + 0.5 * width
+}
+
+/// The payload's ways in space, n3 down, with the curve to be flown in grey.
+pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
+    let all = || curve.iter().chain(tracks.iter().flat_map(|track| &track.points));
+    let axes: [Range<f64>; 3] = std::array::from_fn(|axis| range(all().map(|p| p[axis]), 1.0));
+    let level = (axes[0].end - axes[0].start).max(axes[1].end - axes[1].start);
+    let [p1, p2] = [widened(&axes[0], level), widened(&axes[1], level)];
+    // The chart's own vertical points up: it is −p3.
+    let up = -axes[2].end..-axes[2].start;
+
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 17))
+        .margin(8)
+        .build_cartesian_3d(p1.clone(), up.clone(), p2.clone())?;
+    chart.with_projection(|mut projection| {
+        projection.pitch = 0.35;
+        projection.yaw = 0.6;
+        projection.scale = 0.82;
+        projection.into_matrix()
+    });
+    chart
+        .configure_axes()
+        .light_grid_style(BLACK.mix(0.08))
+        .bold_grid_style(BLACK.mix(0.18))
+        .max_light_lines(1)
+        .x_formatter(&|value| format!("{value:.0}"))
+        .y_formatter(&|up| format!("{:.0}", -up))
+        .z_formatter(&|value| format!("{value:.0}"))
+        .label_style((FONT, 12))
+        .draw()?;
+    let at = |p: &[f64; 3]| (p[0], -p[2], p[1]);
+    let middle = |range: &Range<f64>| 0.5 * (range.start + range.end);
+    let beyond = 0.13 * level;
+    let names = [
+        ("p1, m", (middle(&p1), up.start, p2.end + 1.6 * beyond)),
+        ("p2, m", (p1.end + 1.6 * beyond, up.start, middle(&p2))),
+        ("p3, m", (p1.start, up.end, p2.end + 0.6 * beyond)),
+    ];
+    chart.draw_series(names.map(|(name, place)| Text::new(name, place, (FONT, 13).into_font())))?;
+    chart.draw_series(LineSeries::new(curve.iter().map(at), GREY.stroke_width(1)))?;
+    for track in tracks {
+        let colour = track.colour;
+        chart
+            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2)))?
+            .label(&track.label)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4, colour.filled())))?;
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .background_style(WHITE.mix(0.8))
+        .draw()?;
+    Ok(())
+}
+
+/// The payload's ways seen from above, n1 up and n2 to the right, with the curve to be flown in grey.
+pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
+    let all = || curve.iter().chain(tracks.iter().flat_map(|track| &track.points));
+    let axes: [Range<f64>; 2] = std::array::from_fn(|axis| range(all().map(|p| p[axis]), 1.0));
+    // Equal scales on both axes.
+    let (width, height) = area.dim_in_pixel();
+    let (width, height) = (f64::from(width) - 80.0, f64::from(height) - 90.0);
+    let scale = ((axes[1].end - axes[1].start) / width).max((axes[0].end - axes[0].start) / height);
+
+    let mut chart = ChartBuilder::on(area)
+        .caption(title, (FONT, 17))
+        .margin(10)
+        .x_label_area_size(38)
+        .y_label_area_size(48)
+        .build_cartesian_2d(widened(&axes[1], scale * width), widened(&axes[0], scale * height))?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_desc("p2, m")
+        .y_desc("p1, m")
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 14))
+        .draw()?;
+    let at = |p: &[f64; 3]| (p[1], p[0]);
+    chart.draw_series(DashedLineSeries::new(curve.iter().map(at), 6, 4, GREY.stroke_width(1)))?;
+    for track in tracks {
+        let colour = track.colour;
+        chart
+            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2)))?
+            .label(&track.label)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4, colour.filled())))?;
+    }
+    Ok(chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .background_style(WHITE.mix(0.8))
+        .draw()?)
+}
+
+/// Curves over time on a linear scale.
+pub fn time(area: &Area<'_>, quantity: &str, curves: &[Curve], marks_s: &[f64]) -> Drawn {
+    let y = range(curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)), 1e-6);
+    let mut builder = time_axes(area);
+    let mut chart = builder.build_cartesian_2d(time_range(curves), y.clone())?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_desc("t, s")
+        .y_desc(quantity)
+        .y_labels(6)
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 14))
+        .draw()?;
+    for &mark in marks_s {
+        chart.draw_series(DashedLineSeries::new([(mark, y.start), (mark, y.end)], 3, 4, GREY.stroke_width(1)))?;
+    }
+    for curve in curves {
+        let colour = curve.colour;
+        chart
+            .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2)))?
+            .label(&curve.label)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    Ok(chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .background_style(WHITE.mix(0.8))
+        .draw()?)
+}
+
+/// Positive curves over time on a logarithmic scale that begins at `floor`.
+pub fn time_log(area: &Area<'_>, quantity: &str, floor: f64, curves: &[Curve], marks_s: &[f64]) -> Drawn {
+    let top = curves.iter().flat_map(|curve| &curve.points).fold(10.0 * floor, |top, point| top.max(2.0 * point.1));
+    let mut builder = time_axes(area);
+    let mut chart = builder.build_cartesian_2d(time_range(curves), (floor..top).log_scale())?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(BLACK.mix(0.12))
+        .x_desc("t, s")
+        .y_desc(quantity)
+        .y_label_formatter(&|value| format!("{value:.0e}"))
+        .label_style((FONT, 13))
+        .axis_desc_style((FONT, 14))
+        .draw()?;
+    for &mark in marks_s {
+        chart.draw_series(DashedLineSeries::new([(mark, floor), (mark, top)], 3, 4, GREY.stroke_width(1)))?;
+    }
+    for curve in curves {
+        let colour = curve.colour;
+        let points = curve.points.iter().map(|&(t, value)| (t, value.max(floor)));
+        chart
+            .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
+            .label(&curve.label)
+            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+    }
+    Ok(chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .label_font((FONT, 13))
+        .background_style(WHITE.mix(0.8))
+        .draw()?)
+}
+
+fn time_axes<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(10).x_label_area_size(38).y_label_area_size(66);
+    builder
+}
+
+fn time_range(curves: &[Curve]) -> Range<f64> {
+    let end = curves.iter().filter_map(|curve| curve.points.last()).fold(1e-3_f64, |end, point| end.max(point.0));
+    0.0..end
+}

@@ -1,0 +1,222 @@
+//! A flight: the controller at its rate, the plant between samples, and an f64 twin that measures rounding.
+//!
+//! The pilot sees the state at each sample; its thrust and torque are held until the next. Beside an f32 pilot an f64
+//! twin, the same source in another scalar with its own ζ and integrals, is asked at the same states; what it answers
+//! moves nothing.
+
+use controller::{Real, SetupError, State};
+use cpu_time::ThreadTime;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::deviation::{Deviation, Deviations};
+use crate::integrate::rk4;
+use crate::metrics::{Metrics, Results};
+use crate::pilot::{Decision, Pilot};
+use crate::plant::{Input, derivative, index};
+use crate::scenario::Scenario;
+
+/// The scalar that the pilot computes in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// As on the target.
+    F32,
+    /// As a reference.
+    F64,
+}
+
+/// One sample of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub t_s: f64,
+    /// The paper's 16 coordinates.
+    pub x: [f64; 16],
+    /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
+    pub decision: Option<Decision>,
+}
+
+/// A finished flight.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// What was measured.
+    pub results: Results,
+    /// Samples every `log_period_s`.
+    pub log: Vec<Sample>,
+    /// Rounding of the pilot, where a twin flew along.
+    pub deviation: Option<Deviation>,
+    /// How it ended.
+    pub end: End,
+    /// Time flown over CPU time of the thread that flew it.
+    pub times_real_time: f64,
+}
+
+/// How a flight ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// At its duration.
+    Complete,
+    /// At a user's wish.
+    Interrupted,
+    /// State or command stopped being finite at this time, s.
+    NotFinite(f64),
+}
+
+/// How to fly.
+#[derive(Clone, Copy)]
+pub struct Options<'a> {
+    /// The pilot's scalar.
+    pub arithmetic: Arithmetic,
+    /// Let an f64 twin of the pilot answer beside it.
+    pub twin: bool,
+    /// Ends the flight early once true.
+    pub stop: &'a AtomicBool,
+    /// Called now and then with the seconds flown since the last call.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+}
+
+/// Control periods between two looks at `stop` and two calls of `progress`.
+const CHECK_PERIODS: u64 = 256;
+
+/// Flies `scenario`.
+///
+/// # Errors
+/// [`SetupError`] if the scenario's numbers do not survive the pilot's scalar.
+pub fn fly(scenario: &Scenario, options: Options<'_>) -> Result<Flight, SetupError<f64>> {
+    let twin = if options.twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
+    Ok(match options.arithmetic {
+        Arithmetic::F32 => {
+            let pilot = Pilot::<f32>::new(&scenario.controller).map_err(widen)?;
+            fly_with(scenario, pilot, twin, options)
+        }
+        Arithmetic::F64 => fly_with(scenario, Pilot::<f64>::new(&scenario.controller)?, twin, options),
+    })
+}
+
+/// Flies `scenario` with the f32 pilot, alone and to the end.
+///
+/// # Errors
+/// As [`fly`].
+pub fn fly_simply(scenario: &Scenario, arithmetic: Arithmetic) -> Result<Flight, SetupError<f64>> {
+    let stop = AtomicBool::new(false);
+    fly(scenario, Options { arithmetic, twin: false, stop: &stop, progress: &|_| {} })
+}
+
+fn fly_with<T: Real>(
+    scenario: &Scenario,
+    mut pilot: Pilot<T>,
+    mut twin: Option<Pilot<f64>>,
+    options: Options<'_>,
+) -> Flight {
+    let started = ThreadTime::now();
+    let rate_hz = scenario.controller.rate_hz;
+    let period = 1.0 / rate_hz;
+    let periods = |seconds: f64| (seconds * rate_hz).round() as u64;
+    let steps = scenario.steps();
+    let log_every = periods(scenario.log_period_s).max(1);
+    let (stopped_at, released_at) = match scenario.obstacle {
+        Some(obstacle) => (periods(obstacle.at_s), periods(obstacle.at_s + obstacle.hold_s)),
+        None => (u64::MAX, u64::MAX),
+    };
+
+    let mut x = scenario.initial;
+    let mut metrics = Metrics::new(scenario);
+    let mut deviations = Deviations::new(&scenario.controller);
+    let mut log = Vec::with_capacity((steps / log_every) as usize + 2);
+    let mut end = End::Complete;
+    let mut start = Some(scenario.controller.zeta);
+    let mut step = 0;
+    while step < steps {
+        let t_s = step as f64 * period;
+        if step % CHECK_PERIODS == 0 && step > 0 {
+            (options.progress)(CHECK_PERIODS as f64 * period);
+            if options.stop.load(Ordering::Relaxed) {
+                end = End::Interrupted;
+                break;
+            }
+        }
+        if step == stopped_at {
+            stop_vehicle(&mut x);
+        }
+        if step == released_at {
+            start = Some([0.0; 4]);
+        }
+        let held = (stopped_at..released_at).contains(&step);
+        let mut sample = Sample { t_s, x, decision: None };
+        if !held {
+            let state = State::from_paper(&x);
+            if let Some(zeta) = start.take() {
+                pilot.start(&state, zeta);
+                if let Some(twin) = &mut twin {
+                    twin.start(&state, zeta);
+                }
+            }
+            let decision = pilot.step(&state, t_s);
+            sample.decision = Some(decision);
+            if let Some(twin) = &mut twin {
+                deviations.push(&decision, &twin.step(&state, t_s));
+            }
+            x = rk4(
+                |_, x| derivative(&scenario.vehicle, x, &decision.input),
+                t_s,
+                &x,
+                period,
+                scenario.substeps,
+            );
+        }
+        metrics.push(&sample, period);
+        if step % log_every == 0 {
+            log.push(sample);
+        }
+        step += 1;
+        if !(x.iter().all(|value| value.is_finite()) && sample.decision.is_none_or(|d| is_finite(&d.input))) {
+            end = End::NotFinite(t_s);
+            break;
+        }
+    }
+    let last = Sample { t_s: step as f64 * period, x, decision: None };
+    metrics.push(&last, 0.0);
+    log.push(last);
+    (options.progress)((step % CHECK_PERIODS) as f64 * period);
+
+    let flown = step as f64 * period;
+    Flight {
+        results: metrics.finish(),
+        log,
+        deviation: options.twin.then(|| deviations.finish()),
+        end,
+        times_real_time: flown / started.elapsed().as_secs_f64(),
+    }
+}
+
+/// What the obstacle does: v, α, β, φ, θ and all rates become zero, p and ψ stay.
+fn stop_vehicle(x: &mut [f64; 16]) {
+    let before = *x;
+    *x = [0.0; 16];
+    x[index::POSITION..index::POSITION + 3].copy_from_slice(&before[index::POSITION..index::POSITION + 3]);
+    x[index::PSI] = before[index::PSI];
+}
+
+fn is_finite(input: &Input) -> bool {
+    input.thrust.is_finite() && input.torque.iter().all(|value| value.is_finite())
+}
+
+/// An error of an f32 controller in f64, exact.
+fn widen(error: SetupError<f32>) -> SetupError<f64> {
+    use controller::GainError;
+    match error {
+        SetupError::Range(e) => SetupError::Range(controller::OutOfRange {
+            field: e.field,
+            value: e.value.into(),
+            min: e.min.into(),
+            max: e.max.into(),
+        }),
+        SetupError::Gains(e) => SetupError::Gains(match e {
+            GainError::PoleCount { expected, given } => GainError::PoleCount { expected, given },
+            GainError::UnstablePole { re } => GainError::UnstablePole { re: re.into() },
+            GainError::NotHurwitz { output } => GainError::NotHurwitz { output },
+            GainError::Integral { output, value, limit } => {
+                GainError::Integral { output, value: value.into(), limit: limit.into() }
+            }
+        }),
+    }
+}
