@@ -3,6 +3,9 @@
 //! Over [`Series`](crate::series::Series), `Dual<Series<T, N>, 3>` carries a function of position and its gradient, both along
 //! the payload's motion. Nested once more they carry second derivatives.
 
+// The product and quotient rules mix operators, as they should.
+#![allow(clippy::suspicious_arithmetic_impl)]
+
 use core::array::from_fn;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 use crate::analytic::Analytic;
 use crate::error::OutOfRange;
 use crate::lift::PositionSeries;
-use crate::path::{ConstantSpeed, Curve, FixedYaw, Located, Profiled};
+use crate::path::curve::velocity;
+use crate::path::{ConstantSpeed, Curve, Curved, FixedYaw, Located, Profiled};
 use crate::scalar::Real;
 use crate::series::Series;
 
@@ -42,15 +43,27 @@ impl<T: Real> Curve<T> for Circle<T> {
         let [x, y, z] = position;
         let distance_squared = x.square() + y.square();
 
-        let rho: Series<T, 6> = distance_squared.truncate().rsqrt();
-        let moment = x.truncate() * y.differentiate() - y.truncate() * x.differentiate();
-        let (x0, y0, per_distance) = (x.value(), y.value(), rho.value());
+        let per_length = distance_squared.truncate().rsqrt();
+        let along = [-y.truncate::<6>(), x.truncate(), Series::constant(T::zero())];
+        let [v_x, v_y, _] = velocity(position);
+        let [a_x, a_y, _] = along;
+        let (x0, y0) = (x.value(), y.value());
         let (zero, one) = (T::zero(), T::one());
         Located {
             surfaces: [distance_squared - self.radius * self.radius, *z - self.p3],
             gradients: [Vector3::new(x0 + x0, y0 + y0, zero), Vector3::new(zero, zero, one)],
-            tangent: Vector3::new(-y0 * per_distance, x0 * per_distance, zero),
-            speed: moment * rho,
+            along,
+            per_length,
+            speed: (a_x * v_x + a_y * v_y) * per_length,
+            reach_margin: one,
         }
+    }
+}
+
+impl<T: Real> Curved<T> for Circle<T> {
+    #[inline]
+    fn turning(&self, _: &PositionSeries<T>, located: &Located<T>) -> [Series<T, 6>; 3] {
+        let [x, y, z] = located.along;
+        [-y, x, z]
     }
 }

@@ -5,13 +5,35 @@
 //! evaluated on the payload's Taylor series, so every derivative that the law needs comes from ordinary series
 //! arithmetic.
 //!
-//! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`].
+//! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`]. A curve of one's own is
+//! a [`Formula`], two lines of ordinary arithmetic; so is a profile.
 
+mod bent;
 mod circle;
-mod profile;
+mod curve;
+mod draped;
+mod ellipse;
+mod field;
+mod fourier;
+mod implicit;
+mod nearest;
+mod speed;
+mod superellipse;
+mod tilted;
+mod yaw;
 
+pub use bent::Bent;
 pub use circle::Circle;
-pub use profile::{ConstantSpeed, FixedYaw};
+pub use curve::{Curve, Curved, Located};
+pub use ellipse::Ellipse;
+pub use field::{Linear, PointingAt, ScalarField};
+pub use fourier::FourierPath;
+pub use implicit::{Formula, Implicit};
+pub use nearest::{Harmonics, NEWTON_STEPS};
+pub use speed::{ConstantSpeed, CurvatureLimited, SpeedProfile};
+pub use superellipse::Superellipse;
+pub use tilted::Tilted;
+pub use yaw::{AlongTangent, FixedYaw, YawProfile};
 
 use nalgebra::Vector3;
 
@@ -32,43 +54,28 @@ pub struct Outputs<T> {
     pub speed_error: Series<T, 6>,
     /// ψ_d, rad, orders 0 to 2. Any representative modulo 2π: the law wraps the difference.
     pub yaw: Series<T, 3>,
+    /// What is left of the curve's reach, see [`Located::reach_margin`].
+    pub reach_margin: T,
 }
 
 /// A closed curve with speed and yaw along it.
 pub trait Path<T: Real> {
     /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
+
+    /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
+    fn engage(&mut self, _position: &Vector3<T>) {}
 }
 
-/// Where a payload is with respect to a curve, along its Taylor series.
-#[derive(Clone, Copy, Debug)]
-pub struct Located<T> {
-    /// h1 and h2, orders 0 to 6.
-    pub surfaces: [Series<T, 7>; 2],
-    /// ∇h1 and ∇h2 now, in N.
-    pub gradients: [Vector3<T>; 2],
-    /// ρ now, in N.
-    pub tangent: Vector3<T>,
-    /// ρ·v, m/s, orders 0 to 5.
-    pub speed: Series<T, 6>,
-}
+impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
+    #[inline]
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+        (**self).outputs(position)
+    }
 
-/// A closed curve in space, as two functions that vanish on it.
-pub trait Curve<T: Real> {
-    /// Evaluates the curve's functions along `position`.
-    fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
-}
-
-/// The speed v_d prescribed along a curve, as a function of position.
-pub trait SpeedProfile<T: Real> {
-    /// v_d, m/s along ρ (negative: against it), orders 0 to 5.
-    fn speed(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6>;
-}
-
-/// The yaw ψ_d prescribed along a curve, as a function of position.
-pub trait YawProfile<T: Real> {
-    /// ψ_d, rad, orders 0 to 2.
-    fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3>;
+    fn engage(&mut self, position: &Vector3<T>) {
+        (**self).engage(position);
+    }
 }
 
 /// A curve with its speed and yaw profiles.
@@ -86,7 +93,7 @@ impl<T, C, S, Y> Path<T> for Profiled<C, S, Y>
 where
     T: Real,
     C: Curve<T>,
-    S: SpeedProfile<T>,
+    S: SpeedProfile<T, C>,
     Y: YawProfile<T>,
 {
     #[inline]
@@ -95,9 +102,14 @@ where
         Outputs {
             surfaces: located.surfaces,
             gradients: located.gradients,
-            tangent: located.tangent,
-            speed_error: located.speed - self.speed.speed(position, &located),
+            tangent: located.tangent(),
+            speed_error: located.speed - self.speed.speed(&self.curve, position, &located),
             yaw: self.yaw.yaw(position, &located),
+            reach_margin: located.reach_margin,
         }
+    }
+
+    fn engage(&mut self, position: &Vector3<T>) {
+        self.curve.engage(position);
     }
 }

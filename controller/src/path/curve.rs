@@ -1,0 +1,105 @@
+//! What a curve answers: where the payload is with respect to it.
+
+use nalgebra::Vector3;
+
+use crate::analytic::Analytic;
+use crate::lift::PositionSeries;
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// Where a payload is with respect to a curve, along its Taylor series.
+#[derive(Clone, Copy, Debug)]
+pub struct Located<T> {
+    /// h1 and h2, orders 0 to 6.
+    pub surfaces: [Series<T, 7>; 2],
+    /// ∇h1 and ∇h2 now, in N.
+    pub gradients: [Vector3<T>; 2],
+    /// A vector along ρ in N, of any length, orders 0 to 5.
+    pub along: [Series<T, 6>; 3],
+    /// 1/|`along`|, so that ρ is their product; orders 0 to 5.
+    pub per_length: Series<T, 6>,
+    /// ρ·v, m/s, orders 0 to 5.
+    pub speed: Series<T, 6>,
+    /// 1 − (curvature · distance towards the centre of curvature) for curves with a nearest point, whose coordinates end where
+    /// this reaches 0; 1 for the others.
+    pub reach_margin: T,
+}
+
+impl<T: Real> Located<T> {
+    /// From the functions, their gradients now, and a vector `along` the tangent.
+    #[inline]
+    pub fn new(
+        surfaces: [Series<T, 7>; 2],
+        gradients: [Vector3<T>; 2],
+        along: [Series<T, 6>; 3],
+        position: &PositionSeries<T>,
+    ) -> Self {
+        let per_length = norm_squared(&along).rsqrt();
+        let speed = dot(&along, &velocity(position)) * per_length;
+        Self { surfaces, gradients, along, per_length, speed, reach_margin: T::one() }
+    }
+
+    /// ρ now, in N.
+    #[inline]
+    pub fn tangent(&self) -> Vector3<T> {
+        now(&self.along) * self.per_length.value()
+    }
+}
+
+/// A closed curve in space, as two functions that vanish on it.
+pub trait Curve<T: Real> {
+    /// Evaluates the curve's functions along `position`.
+    fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
+
+    /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
+    fn engage(&mut self, _position: &Vector3<T>) {}
+}
+
+/// A curve that knows how its tangent turns.
+pub trait Curved<T: Real>: Curve<T> {
+    /// The derivative of [`Located::along`] in its own direction, (D`along`)·`along`, at the position that was located last.
+    fn turning(&self, position: &PositionSeries<T>, located: &Located<T>) -> [Series<T, 6>; 3];
+
+    /// κ², 1/m²: the squared curvature of the curve of constant (h1, h2) through the payload; κ = |a × a′|/|a|³ with a = `along`.
+    #[inline]
+    fn curvature_squared(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
+        let bend = cross(&located.along, &self.turning(position, located));
+        let per_square = located.per_length.square();
+        norm_squared(&bend) * (per_square.square() * per_square)
+    }
+}
+
+/// v, m/s, from p.
+#[inline]
+pub(super) fn velocity<T: Real>(position: &PositionSeries<T>) -> [Series<T, 6>; 3] {
+    let [x, y, z] = position;
+    [x.differentiate(), y.differentiate(), z.differentiate()]
+}
+
+/// a·b.
+#[inline]
+pub(super) fn dot<T: Real, const N: usize>(a: &[Series<T, N>; 3], b: &[Series<T, N>; 3]) -> Series<T, N> {
+    let ([a1, a2, a3], [b1, b2, b3]) = (*a, *b);
+    a1 * b1 + a2 * b2 + a3 * b3
+}
+
+/// |a|².
+#[inline]
+pub(super) fn norm_squared<T: Real, const N: usize>(a: &[Series<T, N>; 3]) -> Series<T, N> {
+    let [a1, a2, a3] = *a;
+    a1.square() + a2.square() + a3.square()
+}
+
+/// a × b.
+#[inline]
+pub(super) fn cross<T: Real, const N: usize>(a: &[Series<T, N>; 3], b: &[Series<T, N>; 3]) -> [Series<T, N>; 3] {
+    let ([a1, a2, a3], [b1, b2, b3]) = (*a, *b);
+    [a2 * b3 - a3 * b2, a3 * b1 - a1 * b3, a1 * b2 - a2 * b1]
+}
+
+/// The value of a vector of series.
+#[inline]
+pub(super) fn now<T: Real, const N: usize>(a: &[Series<T, N>; 3]) -> Vector3<T> {
+    let [x, y, z] = a;
+    Vector3::new(x.value(), y.value(), z.value())
+}

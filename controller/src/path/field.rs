@@ -1,0 +1,62 @@
+//! Functions of position, for speeds and yaws.
+
+use nalgebra::Vector3;
+
+use crate::analytic::Analytic;
+use crate::lift::PositionSeries;
+use crate::path::{Formula, Located, SpeedProfile, YawProfile};
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// A function of position given as a formula. In a [`Formula`] it is a [`SpeedProfile`] (in m/s) and a [`YawProfile`] (in rad).
+pub trait ScalarField<T: Real> {
+    /// The value at the point p (N, m).
+    fn at<A: Analytic<T>>(&self, p: [A; 3]) -> A;
+}
+
+impl<T: Real, C, F: ScalarField<T>> SpeedProfile<T, C> for Formula<F> {
+    #[inline]
+    fn speed(&self, _: &C, position: &PositionSeries<T>, _: &Located<T>) -> Series<T, 6> {
+        self.0.at(position.map(|coordinate| coordinate.truncate::<6>()))
+    }
+}
+
+impl<T: Real, F: ScalarField<T>> YawProfile<T> for Formula<F> {
+    #[inline]
+    fn yaw(&self, position: &PositionSeries<T>, _: &Located<T>) -> Series<T, 3> {
+        self.0.at(position.map(|coordinate| coordinate.truncate::<3>()))
+    }
+}
+
+/// `value` at the origin, and from there a constant `gradient` (per m, in N).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear<T> {
+    /// The value at p = 0.
+    pub value: T,
+    /// Its change per metre along n1, n2, n3.
+    pub gradient: Vector3<T>,
+}
+
+impl<T: Real> ScalarField<T> for Linear<T> {
+    #[inline]
+    fn at<A: Analytic<T>>(&self, [x, y, z]: [A; 3]) -> A {
+        let g = &self.gradient;
+        x * g.x + y * g.y + z * g.z + self.value
+    }
+}
+
+/// atan2(y − p2, x − p1), rad: as a yaw, b1 points towards a vertical line. Not defined on that line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PointingAt<T> {
+    /// Along n1, m.
+    pub x: T,
+    /// Along n2, m.
+    pub y: T,
+}
+
+impl<T: Real> ScalarField<T> for PointingAt<T> {
+    #[inline]
+    fn at<A: Analytic<T>>(&self, [x, y, _]: [A; 3]) -> A {
+        (-y + self.y).atan2(-x + self.x)
+    }
+}

@@ -1,0 +1,202 @@
+//! Any smooth closed curve, as a Fourier series with normal-plane coordinates about the nearest point.
+
+// As in series.rs: indices run over compile-time orders.
+#![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
+
+use nalgebra::Vector3;
+
+use crate::analytic::Analytic;
+use crate::error::OutOfRange;
+use crate::lift::PositionSeries;
+use crate::path::curve::{dot, norm_squared, now, velocity};
+use crate::path::{Curve, Curved, Harmonics, Located};
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// Orders of p(t), hence of σ(t).
+const N: usize = 7;
+
+/// The curve c(σ) as a path. With σ(p) the nearest point, r = p − c(σ) and t = c′/|c′|,
+///
+/// ```text
+/// n1 = (e − (e·t) t)/|…|,   n2 = t × n1,   h1 = r·n1,   h2 = r·n2,   ρ = t
+/// r·c′ = 0:   h1 = (r·e) |c′|/|c′ × e|,   h2 = r·(c′ × e)/|c′ × e|
+/// ```
+///
+/// **h1 and h2 are in m, and |(h1, h2)| is the distance to the curve.** These coordinates exist within the curve's reach, the
+/// distance of its nearest centre of curvature or second branch. The nearest point is followed from sample to sample by
+/// [`NEWTON_STEPS`](crate::path::NEWTON_STEPS) Newton steps, so a crossing branch can't catch it; [`Curve::engage`] searches the
+/// whole curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FourierPath<T, const K: usize> {
+    harmonics: Harmonics<T, K>,
+    /// The reference direction at unit length.
+    reference: Vector3<T>,
+    /// Of the nearest point at the last sample, rad.
+    sigma: T,
+    /// c about it, by its derivatives in σ.
+    local: [Vector3<T>; N + 1],
+    /// σ(t) − σ(0).
+    advance: [T; N],
+}
+
+impl<T: Real, const K: usize> FourierPath<T, K> {
+    /// The path of `harmonics` (|coefficients| ≤ 10⁵ m), if its tangent keeps 6° from the reference direction.
+    pub fn new(harmonics: Harmonics<T, K>) -> Result<Self, OutOfRange<T>> {
+        harmonics.check()?;
+        let reference = Vector3::from(harmonics.reference);
+        Ok(Self {
+            harmonics,
+            reference: reference * (T::one() / reference.dot(&reference).sqrt()),
+            sigma: T::zero(),
+            local: [Vector3::zeros(); N + 1],
+            advance: [T::zero(); N],
+        })
+    }
+
+    /// The curve.
+    pub fn harmonics(&self) -> &Harmonics<T, K> {
+        &self.harmonics
+    }
+
+    /// σ of the nearest point at the last sample, rad, in (−π, π].
+    pub fn sigma(&self) -> T {
+        self.sigma
+    }
+
+    /// p − a0, N, m.
+    #[inline]
+    fn offset(&self, position: &Vector3<T>) -> Vector3<T> {
+        position - Vector3::from(self.harmonics.center)
+    }
+}
+
+/// r = p − c(σ), c′(σ) and σ − σ(0) along the payload's motion.
+struct Nearest<T> {
+    error: [Series<T, N>; 3],
+    first: [Series<T, N>; 3],
+    advance: [T; N],
+}
+
+/// Solves r·c′ = 0 order by order, given c's derivatives about the nearest point and `divisor` |c′|² − r·c″ there.
+///
+/// With s = σ − σ(0) and powers sʲ, both r and c′ are Σⱼ (…) sʲ, in which the newest coefficient of s stands in the first power
+/// alone: order m of r·c′ is linear in it.
+#[inline]
+fn solve<T: Real>(
+    position: &PositionSeries<T>,
+    offset: &Vector3<T>,
+    local: &[Vector3<T>; N + 1],
+    divisor: T,
+) -> Nearest<T> {
+    // Taylor coefficients of c and c′ in s.
+    let mut point = *local;
+    let mut first = [Vector3::zeros(); N];
+    let mut per_factorial = T::one();
+    for j in 1..=N {
+        first[j - 1] = local[j] * per_factorial;
+        per_factorial *= T::lit(1.0 / j as f64);
+        point[j] = local[j] * per_factorial;
+    }
+
+    let per_divisor = T::one() / divisor;
+    let mut powers = [[T::zero(); N]; N];
+    let mut r = [Vector3::zeros(); N];
+    let mut d = [Vector3::zeros(); N];
+    r[0] = offset - point[0];
+    d[0] = first[0];
+    let [x, y, z] = position;
+    for m in 1..N {
+        r[m] = Vector3::new(x.0[m], y.0[m], z.0[m]);
+        for j in 2..=m {
+            // [sʲ]_m from s and sʲ⁻¹, whose series begin at orders 1 and j − 1.
+            let mut power = T::zero();
+            for i in 1..=m - j + 1 {
+                power += powers[1][i] * powers[j - 1][m - i];
+            }
+            powers[j][m] = power;
+            r[m] -= point[j] * power;
+            d[m] += first[j] * power;
+        }
+        let mut product = T::zero();
+        for i in 0..=m {
+            product += r[i].dot(&d[m - i]);
+        }
+        let advance = product * per_divisor;
+        powers[1][m] = advance;
+        r[m] -= point[1] * advance;
+        d[m] += first[1] * advance;
+    }
+    let transposed = |v: &[Vector3<T>; N]| [Series(v.map(|v| v.x)), Series(v.map(|v| v.y)), Series(v.map(|v| v.z))];
+    Nearest { error: transposed(&r), first: transposed(&d), advance: powers[1] }
+}
+
+impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
+    #[inline]
+    fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
+        let offset = self.offset(&now(position));
+        self.sigma = self.harmonics.track(&offset, self.sigma);
+        self.local = self.harmonics.derivatives(self.sigma);
+        let [point, c_1, c_2, ..] = self.local;
+        let speed_squared = c_1.dot(&c_1);
+        let r = offset - point;
+        let divisor = speed_squared - r.dot(&c_2);
+        let Nearest { error, first, advance } = solve(position, &offset, &self.local, divisor);
+        self.advance = advance;
+
+        // h1 = (r·e) g and h2 = (r·w)/|w| with w = c′ × e and g = |c′|/|w|.
+        let e = &self.reference;
+        let [d1, d2, d3] = first;
+        let w = [d2 * e.z - d3 * e.y, d3 * e.x - d1 * e.z, d1 * e.y - d2 * e.x];
+        let per_w = norm_squared(&w).rsqrt();
+        let length_squared = norm_squared(&first);
+        let per_length = length_squared.rsqrt();
+        let g = length_squared * per_length * per_w;
+        let [r1, r2, r3] = error;
+        let height = r1 * e.x + r2 * e.y + r3 * e.z;
+
+        // Gradients: r moves by dp − c′ dσ, c′ by c″ dσ, with ∇σ = c′/divisor.
+        let grad_sigma = c_1 * (T::one() / divisor);
+        let (w_0, per_w_0, g_0) = (now(&w), per_w.value(), g.value());
+        let w_1 = c_2.cross(e);
+        let w_rate = w_0.dot(&w_1) * per_w_0 * per_w_0;
+        let g_1 = g_0 * (c_1.dot(&c_2) / speed_squared - w_rate);
+        let n2 = w_0 * per_w_0;
+        let h1_sigma = height.value() * g_1 - e.dot(&c_1) * g_0;
+        let h2_sigma = (r.dot(&w_1) - r.dot(&w_0) * w_rate) * per_w_0;
+
+        let along = first.map(|c| c.truncate());
+        let per_length = per_length.truncate();
+        Located {
+            surfaces: [height * g, dot(&error, &w) * per_w],
+            gradients: [e * g_0 + grad_sigma * h1_sigma, n2 + grad_sigma * h2_sigma],
+            along,
+            per_length,
+            speed: dot(&along, &velocity(position)) * per_length,
+            reach_margin: divisor / speed_squared,
+        }
+    }
+
+    fn engage(&mut self, position: &Vector3<T>) {
+        self.sigma = self.harmonics.search(&self.offset(position));
+    }
+}
+
+impl<T: Real, const K: usize> Curved<T> for FourierPath<T, K> {
+    /// c″(σ(t)): its Taylor polynomial in s, by Horner's rule.
+    #[inline]
+    fn turning(&self, _: &PositionSeries<T>, _: &Located<T>) -> [Series<T, 6>; 3] {
+        let advance: Series<T, 6> = Series(self.advance).truncate();
+        let mut per_factorial = T::one();
+        let mut second = [Vector3::zeros(); 6];
+        for j in 0..6 {
+            second[j] = self.local[j + 2] * per_factorial;
+            per_factorial *= T::lit(1.0 / (j + 1) as f64);
+        }
+        let compose = |component: fn(&Vector3<T>) -> T| {
+            let last = Series::constant(component(&second[5]));
+            second[..5].iter().rev().fold(last, |sum, c| sum * advance + component(c))
+        };
+        [compose(|c| c.x), compose(|c| c.y), compose(|c| c.z)]
+    }
+}

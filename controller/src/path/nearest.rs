@@ -1,0 +1,132 @@
+//! A closed curve as a Fourier series, and the point of it nearest to a given one.
+
+use nalgebra::Vector3;
+
+use crate::error::OutOfRange;
+use crate::scalar::Real;
+
+/// Newton steps from the last sample's nearest point to the present one, always all of them.
+///
+/// The error falls quadratically from the distance flown since the last sample: from 5 cm on a curve of radius 5 m, to 1e-4,
+/// 1e-8 and 1e-16 rad.
+pub const NEWTON_STEPS: usize = 3;
+
+/// Newton steps after the search of the whole curve.
+const ENGAGE_STEPS: usize = 8;
+
+/// Points of the search of the whole curve, per harmonic.
+const SAMPLES_PER_HARMONIC: usize = 16;
+
+/// Of the angle between the reference direction and the tangent, the least sine that a curve is accepted with (6°).
+const LEAST_SINE: f64 = 0.1;
+
+/// The closed curve c(σ) = a0 + Σ_{k=1…K} (A_k cos kσ + B_k sin kσ), σ in rad, in N, m; and the direction that its normals are
+/// counted from. Plain data: it can stand in a `const`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonics<T, const K: usize> {
+    /// a0.
+    pub center: [T; 3],
+    /// A_1 to A_K.
+    pub cos: [[T; 3]; K],
+    /// B_1 to B_K.
+    pub sin: [[T; 3]; K],
+    /// Direction e of any length, nowhere along the tangent.
+    pub reference: [T; 3],
+}
+
+impl<T: Real, const K: usize> Harmonics<T, K> {
+    /// c(σ) − a0, c′(σ), …, c⁽ᴹ⁻¹⁾(σ), in m.
+    #[inline]
+    pub fn derivatives<const M: usize>(&self, sigma: T) -> [Vector3<T>; M] {
+        let (sin_1, cos_1) = sigma.sin_cos();
+        let (mut sin, mut cos) = (sin_1, cos_1);
+        let mut frequency = T::one();
+        let mut sums = [Vector3::zeros(); M];
+        for (a, b) in self.cos.iter().zip(&self.sin) {
+            let (a, b) = (Vector3::from(*a), Vector3::from(*b));
+            // The even derivatives are multiples ±k^m of the harmonic itself, the odd ones of its first derivative.
+            let mut even = a * cos + b * sin;
+            let mut odd = (b * cos - a * sin) * frequency;
+            let factor = -(frequency * frequency);
+            for (order, sum) in sums.iter_mut().enumerate() {
+                if order % 2 == 0 {
+                    *sum += even;
+                    even *= factor;
+                } else {
+                    *sum += odd;
+                    odd *= factor;
+                }
+            }
+            (sin, cos) = (sin * cos_1 + cos * sin_1, cos * cos_1 - sin * sin_1);
+            frequency += T::one();
+        }
+        sums
+    }
+
+    /// c(σ), N, m.
+    pub fn point(&self, sigma: T) -> Vector3<T> {
+        let [offset] = self.derivatives(sigma);
+        offset + Vector3::from(self.center)
+    }
+
+    /// Parameters that sample the whole curve, 16 to the shortest harmonic's period.
+    fn samples() -> impl Iterator<Item = T> {
+        let count = SAMPLES_PER_HARMONIC * K;
+        let step = T::lit(core::f64::consts::TAU / count as f64);
+        (0..count).scan(T::lit(-core::f64::consts::PI), move |sigma, _| {
+            *sigma += step;
+            Some(*sigma)
+        })
+    }
+
+    /// `Ok` if all numbers are within ±10⁵ and the tangent keeps 6° from the reference direction (so it has no zero either).
+    pub(super) fn check(&self) -> Result<(), OutOfRange<T>> {
+        let coefficients = self.cos.iter().chain(&self.sin).chain([&self.center, &self.reference]);
+        for number in coefficients.flatten() {
+            OutOfRange::check("coefficient", *number, -1e5, 1e5)?;
+        }
+        let reference = Vector3::from(self.reference);
+        OutOfRange::check("length of reference", reference.dot(&reference).sqrt(), 1e-3, 1e6)?;
+        for sigma in Self::samples() {
+            let [_, tangent] = self.derivatives(sigma);
+            let across = tangent.cross(&reference);
+            let lengths = tangent.dot(&tangent) * reference.dot(&reference);
+            let sine = (across.dot(&across) / lengths).sqrt();
+            OutOfRange::check("sine of the angle between reference and tangent", sine, LEAST_SINE, 1.001)?;
+        }
+        Ok(())
+    }
+
+    /// One Newton step for (p − c(σ))·c′(σ) = 0, where `offset` is p − a0: at most half of the shortest harmonic's radian, and
+    /// with the curvature's part of the divisor bounded, so that it goes downhill wherever it starts. Finite for any offset.
+    #[inline]
+    fn newton(&self, offset: &Vector3<T>, sigma: T) -> T {
+        let [point, first, second] = self.derivatives(sigma);
+        let error = offset - point;
+        let speed_squared = first.dot(&first);
+        let divisor = (speed_squared - error.dot(&second)).max(speed_squared * T::lit(0.1));
+        let limit = T::lit(0.5 / K as f64);
+        (sigma + (error.dot(&first) / divisor).clamp(-limit, limit)).wrap_angle()
+    }
+
+    /// The nearest point's parameter, rad, by [`NEWTON_STEPS`] from `sigma`.
+    #[inline]
+    pub(super) fn track(&self, offset: &Vector3<T>, sigma: T) -> T {
+        (0..NEWTON_STEPS).fold(sigma, |sigma, _| self.newton(offset, sigma))
+    }
+
+    /// The nearest point's parameter, rad, from a search of the whole curve and Newton steps: 16 K + 8 evaluations, always.
+    pub(super) fn search(&self, offset: &Vector3<T>) -> T {
+        let distance_squared = |sigma| {
+            let [point] = self.derivatives(sigma);
+            let error = offset - point;
+            error.dot(&error)
+        };
+        let start = T::lit(core::f64::consts::PI);
+        let (sigma, _) = Self::samples().fold((start, distance_squared(start)), |best, sigma| {
+            let distance = distance_squared(sigma);
+            if distance < best.1 { (sigma, distance) } else { best }
+        });
+        (0..ENGAGE_STEPS).fold(sigma, |sigma, _| self.newton(offset, sigma))
+    }
+}

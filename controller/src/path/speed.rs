@@ -1,0 +1,57 @@
+//! Speeds prescribed along a curve.
+
+use crate::analytic::Analytic;
+use crate::error::OutOfRange;
+use crate::lift::PositionSeries;
+use crate::path::{Curved, Located};
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// The speed v_d prescribed along a curve `C`, as a function of position.
+pub trait SpeedProfile<T: Real, C> {
+    /// v_d, m/s along ρ (negative: against it), orders 0 to 5, where `curve` has just `located` the payload.
+    fn speed(&self, curve: &C, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6>;
+}
+
+/// v_d constant, m/s along ρ; negative flies it the other way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConstantSpeed<T>(pub T);
+
+impl<T: Real, C> SpeedProfile<T, C> for ConstantSpeed<T> {
+    #[inline]
+    fn speed(&self, _: &C, _: &PositionSeries<T>, _: &Located<T>) -> Series<T, 6> {
+        Series::constant(self.0)
+    }
+}
+
+/// Slower where the curve bends, so that the centripetal acceleration κ v² stays below a bound a:
+///
+/// ```text
+/// v_d = v0 (1 + (κ v0²/a)²)^(−1/4)
+/// ```
+///
+/// Smooth, equal to v0 on a straight piece, and √(a/κ) where v0 would be much too fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvatureLimited<T> {
+    speed: T,
+    /// (v0²/a)², m².
+    radius_squared: T,
+}
+
+impl<T: Real> CurvatureLimited<T> {
+    /// At most `speed` (m/s, |v0| ≤ 100, negative flies the other way) and `acceleration` (m/s², 0.01 to 100).
+    pub fn new(speed: T, acceleration: T) -> Result<Self, OutOfRange<T>> {
+        OutOfRange::check("speed", speed, -100.0, 100.0)?;
+        OutOfRange::check("acceleration", acceleration, 0.01, 100.0)?;
+        let radius = speed * speed / acceleration;
+        Ok(Self { speed, radius_squared: radius * radius })
+    }
+}
+
+impl<T: Real, C: Curved<T>> SpeedProfile<T, C> for CurvatureLimited<T> {
+    #[inline]
+    fn speed(&self, curve: &C, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
+        let excess = curve.curvature_squared(position, located) * self.radius_squared;
+        (excess + T::one()).sqrt().rsqrt() * self.speed
+    }
+}

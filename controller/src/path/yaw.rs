@@ -1,0 +1,39 @@
+//! Yaws prescribed along a curve.
+
+use crate::analytic::Analytic;
+use crate::lift::PositionSeries;
+use crate::path::Located;
+use crate::scalar::Real;
+use crate::series::Series;
+
+/// The yaw ψ_d prescribed along a curve, as a function of position.
+///
+/// A yaw is defined modulo 2π: any representative will do, and a jump of 2π between two samples is none in flight. Its
+/// derivatives know no such jump.
+pub trait YawProfile<T: Real> {
+    /// ψ_d, rad, orders 0 to 2.
+    fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3>;
+}
+
+/// ψ_d constant, rad.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FixedYaw<T>(pub T);
+
+impl<T: Real> YawProfile<T> for FixedYaw<T> {
+    #[inline]
+    fn yaw(&self, _: &PositionSeries<T>, _: &Located<T>) -> Series<T, 3> {
+        Series::constant(self.0)
+    }
+}
+
+/// ψ_d = atan2(ρ2, ρ1): b1 along the tangent's horizontal part. Not defined where the tangent is vertical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlongTangent;
+
+impl<T: Real> YawProfile<T> for AlongTangent {
+    #[inline]
+    fn yaw(&self, _: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3> {
+        let [x, y, _] = &located.along;
+        y.truncate().atan2(x.truncate())
+    }
+}
