@@ -1,0 +1,182 @@
+//! A closed curve as walked once: its points by arc length, the nearest of them to any point, and its distance from itself.
+
+use super::probe::{Motion, length};
+use super::refusal::Place;
+use controller::Vector3;
+
+/// A point of a lap.
+#[derive(Clone, Copy, Debug)]
+pub struct Node {
+    /// Arc length from the lap's start, m.
+    pub arc: f64,
+    /// Taylor coefficients of the curve by arc length.
+    pub motion: Motion,
+    /// |∇h1 × ∇h2|.
+    pub regularity: f64,
+}
+
+impl Node {
+    /// The point, in N, m.
+    #[must_use]
+    pub fn position(&self) -> Vector3<f64> {
+        self.motion[0]
+    }
+    /// ρ.
+    #[must_use]
+    pub fn tangent(&self) -> Vector3<f64> {
+        self.motion[1]
+    }
+    /// 1/m.
+    #[must_use]
+    pub fn curvature(&self) -> f64 {
+        2.0 * length(&self.motion[2])
+    }
+    /// Where it is.
+    #[must_use]
+    pub fn place(&self) -> Place {
+        Place { position: self.position(), arc: self.arc }
+    }
+}
+
+/// A closed curve, walked once round. Never empty; the last node is the first again, one length on.
+#[derive(Clone, Debug)]
+pub struct Lap {
+    nodes: Vec<Node>,
+}
+
+/// A curve's nearest point to a given one.
+#[derive(Clone, Copy, Debug)]
+pub struct Nearest {
+    /// d_C, m.
+    pub distance: f64,
+    /// The point and its arc length.
+    pub place: Place,
+    /// ρ there.
+    pub tangent: Vector3<f64>,
+}
+
+/// Two branches of a curve at their closest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Approach {
+    /// m.
+    pub distance: f64,
+    /// One.
+    pub here: Place,
+    /// The other.
+    pub there: Place,
+}
+
+impl Lap {
+    pub(super) fn new(nodes: Vec<Node>) -> Self {
+        Self { nodes }
+    }
+
+    /// Its points in order, the last equal to the first.
+    #[must_use]
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// m.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.nodes.last().map_or(0.0, |node| node.arc)
+    }
+
+    /// The node with the largest curvature.
+    #[must_use]
+    pub fn sharpest(&self) -> &Node {
+        self.nodes
+            .iter()
+            .fold(&self.nodes[0], |best, node| if node.curvature() > best.curvature() { node } else { best })
+    }
+
+    /// The curve's nearest point, over the whole of it.
+    #[must_use]
+    pub fn nearest(&self, position: Vector3<f64>) -> Nearest {
+        let squared = |v: Vector3<f64>| v.dot(&v);
+        let (mut best, mut least) = (0, f64::INFINITY);
+        for (index, node) in self.nodes.iter().enumerate() {
+            let distance = squared(node.position() - position);
+            if distance < least {
+                (best, least) = (index, distance);
+            }
+        }
+        self.nearest_on(best % (self.nodes.len() - 1), position)
+    }
+
+    /// The two branches that come closest: points whose join is normal to the curve at both, which neighbours on a bend are
+    /// not. `None` for a curve without such a pair, as a circle.
+    #[must_use]
+    pub fn closest_branches(&self) -> Option<Approach> {
+        let count = self.nodes.len() - 1;
+        let mut closest: Option<Approach> = None;
+        for i in 0..count {
+            let here = &self.nodes[i];
+            // Distance from here along the curve has its local minima where the other branch is passed squarely.
+            let squared = |j: usize| {
+                let join = self.nodes[j % count].position() - here.position();
+                join.dot(&join)
+            };
+            for offset in 2..count - 1 {
+                let j = i + offset;
+                if squared(j) > squared(j - 1) || squared(j) > squared(j + 1) {
+                    continue;
+                }
+                let found = self.nearest_on(j % count, here.position());
+                if closest.is_none_or(|closest| found.distance < closest.distance) {
+                    closest = Some(Approach { distance: found.distance, here: here.place(), there: found.place });
+                }
+            }
+        }
+        closest
+    }
+
+    /// The nearest point within the segments on both sides of the node `index`, which is not the last.
+    fn nearest_on(&self, index: usize, position: Vector3<f64>) -> Nearest {
+        let before = if index == 0 { self.nodes.len() - 2 } else { index - 1 };
+        let left = Segment::between(&self.nodes[before], &self.nodes[before + 1]).nearest(position);
+        let right = Segment::between(&self.nodes[index], &self.nodes[index + 1]).nearest(position);
+        if left.distance < right.distance { left } else { right }
+    }
+}
+
+/// The cubic with the positions and tangents of two neighbouring nodes, over a parameter from 0 to 1.
+struct Segment {
+    arc: f64,
+    length: f64,
+    coefficients: [Vector3<f64>; 4],
+}
+
+impl Segment {
+    fn between(from: &Node, to: &Node) -> Self {
+        let length = to.arc - from.arc;
+        let (p, q) = (from.position(), to.position());
+        let (u, v) = (from.tangent() * length, to.tangent() * length);
+        let join = q - p;
+        Self { arc: from.arc, length, coefficients: [p, u, join * 3.0 - u * 2.0 - v, u + v - join * 2.0] }
+    }
+
+    /// Newton's method for the foot of the perpendicular, kept within the segment.
+    fn nearest(&self, position: Vector3<f64>) -> Nearest {
+        let [c0, c1, c2, c3] = self.coefficients;
+        let mut t = 0.5_f64;
+        let at = |t: f64| (c0 + (c1 + (c2 + c3 * t) * t) * t, c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t);
+        // The segment bends by 0.02 rad at most: three steps reach rounding from its middle.
+        for _ in 0..4 {
+            let (point, slope) = at(t);
+            let bend = c2 * 2.0 + c3 * (6.0 * t);
+            let away = position - point;
+            let change = slope.dot(&slope) - away.dot(&bend);
+            // Beyond the centre of curvature there is no foot; an end is nearest.
+            let step = if change > 0.0 { away.dot(&slope) / change } else { away.dot(&slope).signum() };
+            t = (t + step).clamp(0.0, 1.0);
+        }
+        let (point, slope) = at(t);
+        Nearest {
+            distance: length(&(position - point)),
+            place: Place { position: point, arc: self.arc + t * self.length },
+            tangent: slope / length(&slope),
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Can it be flown? A path is walked once round before anyone takes off.
+//!
+//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings? Then the flight: with the outputs and
+//! all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from the curve and
+//! v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
+
+pub mod lap;
+pub mod probe;
+pub mod refusal;
+mod report;
+pub mod steady;
+pub mod walk;
+
+pub use lap::{Approach, Lap, Nearest, Node};
+pub use refusal::{Place, Reason, Refusal};
+pub use steady::Steady;
+
+use controller::{Path, Vector3, Vehicle};
+use probe::{Frame, Motion, at_speed, length, prescribed_speed, yaw};
+
+/// What a vehicle may be asked to do on its path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Least and largest thrust, N.
+    pub thrust: [f64; 2],
+    /// Largest angle of the rod from straight down, rad.
+    pub rod_angle: f64,
+    /// Largest angle of b3 from straight down, rad.
+    pub tilt: f64,
+    /// Largest body rate |ω|, rad/s.
+    pub body_rate: f64,
+    /// Largest torque about any body axis, N·m.
+    pub torque: f64,
+    /// Least tension of the rod as a part of the payload's weight.
+    pub tension: f64,
+}
+
+impl Limits {
+    /// Thrust 0.2 to 2 times hover, rod and tilt 45°, 4 rad/s, tension 0.2 of the payload's weight; and per axis the torque of
+    /// a couple of a tenth of the hover thrust at the arm 0.33 m that gives 1 N·m to the paper's vehicle, in proportion to
+    /// its thrust.
+    #[must_use]
+    pub fn of(vehicle: &Vehicle<f64>) -> Self {
+        let hover = vehicle.hover_thrust();
+        let right_angle = std::f64::consts::FRAC_PI_2;
+        Self {
+            thrust: [0.2 * hover, 2.0 * hover],
+            rod_angle: right_angle / 2.0,
+            tilt: right_angle / 2.0,
+            body_rate: 4.0,
+            torque: 0.1 * hover * 0.34,
+            tension: 0.2,
+        }
+    }
+}
+
+/// A quantity's least and largest value over the lap, each with its place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    /// Least.
+    pub min: f64,
+    /// Where.
+    pub min_at: Place,
+    /// Largest.
+    pub max: f64,
+    /// Where.
+    pub max_at: Place,
+}
+
+impl Range {
+    fn new(value: f64, place: Place) -> Self {
+        Self { min: value, min_at: place, max: value, max_at: place }
+    }
+    fn take(&mut self, value: f64, place: Place) {
+        if value < self.min {
+            (self.min, self.min_at) = (value, place);
+        }
+        if value > self.max {
+            (self.max, self.max_at) = (value, place);
+        }
+    }
+}
+
+/// What a lap asks of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// Speed of the payload, m/s.
+    pub speed: Range,
+    /// T, N.
+    pub thrust: Range,
+    /// Angle of the rod from straight down, rad.
+    pub rod_angle: Range,
+    /// Angle of b3 from straight down, rad.
+    pub tilt: Range,
+    /// |ω|, rad/s.
+    pub body_rate: Range,
+    /// Largest component of τ, N·m.
+    pub torque: Range,
+    /// Tension as a part of the payload's weight, −λ/g; 0 in free fall.
+    pub tension: Range,
+    /// q·e3, 0 with the rod horizontal.
+    pub q3: Range,
+    /// q·b3, 0 with the thrust across the rod.
+    pub q_b3: Range,
+    /// κ = T/(m_Q L), 1/s².
+    pub kappa: Range,
+    /// cos²φ, 0 where yaw is not defined.
+    pub cos_phi_squared: Range,
+}
+
+/// A limit that the path at its speed does not keep to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excess {
+    /// The quantity.
+    pub quantity: &'static str,
+    /// Its value, in SI units.
+    pub value: f64,
+    /// The limit.
+    pub limit: f64,
+    /// Where.
+    pub place: Place,
+}
+
+/// The highest constant speed within the limits.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fastest {
+    /// m/s.
+    pub speed: f64,
+    /// What is exceeded just above it, if anything is below [`SPEED_LIMIT`].
+    pub then: Option<Excess>,
+}
+
+/// The answer for a curve that closes and is smooth.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// The curve.
+    pub lap: Lap,
+    /// Time of a lap at the path's speed, s.
+    pub lap_time: f64,
+    /// |∇h1 × ∇h2| over the lap, in the surfaces' units.
+    pub regularity: Range,
+    /// Its branches at their closest, if it has branches.
+    pub branches: Option<Approach>,
+    /// What the path asks for.
+    pub demand: Demand,
+    /// Limits that are not kept.
+    pub excesses: Vec<Excess>,
+    /// The highest constant speed within the limits, if there is one above [`SLOWEST`].
+    pub fastest: Option<Fastest>,
+}
+
+/// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
+const SAME_POINT: f64 = 1e-6;
+/// Range of the search for the highest speed, m/s.
+pub const SPEED_LIMIT: f64 = 100.0;
+/// Its lower end, m/s.
+pub const SLOWEST: f64 = 0.01;
+
+/// Walks `path` from the point found near `hint` (N, m) and says what a lap asks of `vehicle`.
+///
+/// # Errors
+/// [`Refusal`] with the place, if the curve is not closed, smooth, regular and free of self-crossings, if the speed
+/// vanishes on it, or if no thrust can give the motion.
+pub fn check<P: Path<f64> + ?Sized>(
+    path: &mut P,
+    vehicle: &Vehicle<f64>,
+    limits: &Limits,
+    hint: Vector3<f64>,
+) -> Result<Report, Refusal> {
+    let start = walk::find(path, hint)?;
+    let lap = walk::walk(path, start)?;
+    let branches = lap.closest_branches();
+    if let Some(Approach { distance, here, there }) = branches
+        && distance < SAME_POINT / lap.sharpest().curvature()
+    {
+        return Err(Reason::Crossing { other: there.arc }.at(here));
+    }
+
+    let motions = motions(path, &lap)?;
+    let mut lap_time = 0.0;
+    let mut regularity = Range::new(lap.nodes()[0].regularity, lap.nodes()[0].place());
+    let mut demand: Option<Demand> = None;
+    for (node, (motion, yaw)) in lap.nodes().iter().zip(&motions) {
+        let steady = Steady::of(vehicle, motion, yaw).ok_or_else(|| Reason::FreeFall.at(node.place()))?;
+        regularity.take(node.regularity, node.place());
+        match &mut demand {
+            Some(demand) => demand.take(vehicle, &steady, node.place()),
+            None => demand = Some(Demand::of(vehicle, &steady, node.place())),
+        }
+    }
+    for ([from, to], [(first, _), (second, _)]) in lap.nodes().array_windows().zip(motions.array_windows()) {
+        lap_time += (to.arc - from.arc) / (0.5 * (length(&first[1]) + length(&second[1])));
+    }
+    let demand = demand.ok_or_else(|| Reason::NoCurve.at(lap.nodes()[0].place()))?;
+    let excesses = demand.excesses(limits);
+    let forwards = motions[0].0[1].dot(&lap.nodes()[0].tangent()) > 0.0;
+    let fastest = fastest(path, &lap, vehicle, limits, if forwards { 1.0 } else { -1.0 });
+    Ok(Report { lap, lap_time, regularity, branches, demand, excesses, fastest })
+}
+
+/// The motion at the prescribed speed and the yaw along it, at every node.
+fn motions<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<Vec<(Motion, [f64; 3])>, Refusal> {
+    let mut motions: Vec<(Motion, [f64; 3])> = Vec::with_capacity(lap.nodes().len());
+    let mut direction = 0.0_f64;
+    for node in lap.nodes() {
+        let refuse = |reason: Reason| reason.at(node.place());
+        let frame = Frame::at(path, node.position()).ok_or_else(|| refuse(Reason::Undefined))?;
+        let motion = prescribed_speed(path, &frame).ok_or_else(|| refuse(Reason::Undefined))?;
+        let speed = motion[1].dot(&frame.tangent);
+        // From the second node on the sign must stay.
+        if speed == 0.0 || speed * direction < 0.0 {
+            return Err(refuse(Reason::Stops));
+        }
+        direction = speed;
+        let yaw = yaw(path, &motion);
+        if !yaw.iter().all(|value| value.is_finite()) {
+            return Err(refuse(Reason::Undefined));
+        }
+        motions.push((motion, yaw));
+    }
+    Ok(motions)
+}
+
+/// The highest constant speed whose demand keeps to the limits all the way up to it.
+fn fastest<P: Path<f64> + ?Sized>(
+    path: &mut P,
+    lap: &Lap,
+    vehicle: &Vehicle<f64>,
+    limits: &Limits,
+    direction: f64,
+) -> Option<Fastest> {
+    let yaws: Vec<[f64; 3]> = lap.nodes().iter().map(|node| yaw(path, &node.motion)).collect();
+    let exceeds = |speed: f64| -> Option<Excess> {
+        let factor = speed * direction;
+        let mut demand: Option<Demand> = None;
+        for (node, yaw) in lap.nodes().iter().zip(&yaws) {
+            let yaw = [yaw[0], yaw[1] * factor, yaw[2] * factor * factor];
+            let Some(steady) = Steady::of(vehicle, &at_speed(&node.motion, factor), &yaw) else {
+                let place = node.place();
+                return Some(Excess { quantity: "tension", value: 0.0, limit: limits.tension, place });
+            };
+            match &mut demand {
+                Some(demand) => demand.take(vehicle, &steady, node.place()),
+                None => demand = Some(Demand::of(vehicle, &steady, node.place())),
+            }
+        }
+        demand.and_then(|demand| demand.excesses(limits).into_iter().next())
+    };
+
+    if exceeds(SLOWEST).is_some() {
+        return None;
+    }
+    let (mut good, mut bad) = (SLOWEST, None);
+    // Up in steps of a tenth, so that no band of bad speeds wider than that is jumped, then halving.
+    while bad.is_none() && good < SPEED_LIMIT {
+        let next = (1.1 * good).min(SPEED_LIMIT);
+        match exceeds(next) {
+            Some(excess) => bad = Some((next, excess)),
+            None => good = next,
+        }
+    }
+    let Some((mut high, mut then)) = bad else {
+        return Some(Fastest { speed: good, then: None });
+    };
+    while high - good > 1e-4 * good {
+        let middle = 0.5 * (good + high);
+        match exceeds(middle) {
+            Some(excess) => (high, then) = (middle, excess),
+            None => good = middle,
+        }
+    }
+    Some(Fastest { speed: good, then: Some(then) })
+}
+
+impl Demand {
+    fn of(vehicle: &Vehicle<f64>, steady: &Steady, place: Place) -> Self {
+        let range = |value| Range::new(value, place);
+        let values = Self::values(vehicle, steady);
+        let [speed, thrust, rod_angle, tilt, body_rate, torque, tension, q3, q_b3, kappa, cos_phi_squared] =
+            values.map(range);
+        Self { speed, thrust, rod_angle, tilt, body_rate, torque, tension, q3, q_b3, kappa, cos_phi_squared }
+    }
+
+    fn take(&mut self, vehicle: &Vehicle<f64>, steady: &Steady, place: Place) {
+        let ranges = [
+            &mut self.speed,
+            &mut self.thrust,
+            &mut self.rod_angle,
+            &mut self.tilt,
+            &mut self.body_rate,
+            &mut self.torque,
+            &mut self.tension,
+            &mut self.q3,
+            &mut self.q_b3,
+            &mut self.kappa,
+            &mut self.cos_phi_squared,
+        ];
+        for (range, value) in ranges.into_iter().zip(Self::values(vehicle, steady)) {
+            range.take(value, place);
+        }
+    }
+
+    /// In the order of the fields.
+    fn values(vehicle: &Vehicle<f64>, steady: &Steady) -> [f64; 11] {
+        [
+            length(&steady.state.velocity),
+            steady.command.thrust,
+            steady.rod_angle(),
+            steady.tilt(),
+            length(&steady.state.body_rate),
+            steady.command.torque.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs())),
+            -steady.lambda / vehicle.params().gravity,
+            steady.state.rod.z,
+            steady.b3_rod,
+            steady.kappa,
+            steady.cos_phi_squared,
+        ]
+    }
+
+    /// The limits that are not kept.
+    #[must_use]
+    pub fn excesses(&self, limits: &Limits) -> Vec<Excess> {
+        let upper = [
+            ("thrust", &self.thrust, limits.thrust[1]),
+            ("rod angle", &self.rod_angle, limits.rod_angle),
+            ("tilt", &self.tilt, limits.tilt),
+            ("body rate", &self.body_rate, limits.body_rate),
+            ("torque", &self.torque, limits.torque),
+        ];
+        let lower = [("thrust", &self.thrust, limits.thrust[0]), ("tension", &self.tension, limits.tension)];
+        let above = upper
+            .into_iter()
+            .filter(|(_, range, limit)| range.max > *limit)
+            .map(|(quantity, range, limit)| Excess { quantity, value: range.max, limit, place: range.max_at });
+        let below = lower
+            .into_iter()
+            .filter(|(_, range, limit)| range.min < *limit)
+            .map(|(quantity, range, limit)| Excess { quantity, value: range.min, limit, place: range.min_at });
+        above.chain(below).collect()
+    }
+}

@@ -1,0 +1,161 @@
+//! A path seen from the host: its surfaces at a point, points on it, and the motion that keeps to it.
+//!
+//! Everything comes from the outputs (4) that the law itself evaluates, so what holds here holds in flight.
+
+use controller::path::Outputs;
+use controller::{Path, Series, Vector3};
+
+/// Coefficients of a payload's Taylor series, as the law takes them.
+const ORDERS: usize = 7;
+/// Newton's method on a smooth regular curve doubles its digits each time; from a walk's prediction it needs four.
+const CORRECTIONS: usize = 12;
+/// Steps of a search from far away.
+const STRIDES: usize = 60;
+/// A correction below this part of the distance from the origin (at least 1 m) is rounding.
+const CONVERGED: f64 = 1e-13;
+
+/// Taylor coefficients p₀, p₁, … of a motion, m/sᵏ.
+pub type Motion = [Vector3<f64>; ORDERS];
+
+/// A path's outputs at one point, at rest.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// The point, in N, m.
+    pub position: Vector3<f64>,
+    /// h1 and h2.
+    pub surfaces: [f64; 2],
+    /// ∇h1 and ∇h2.
+    pub gradients: [Vector3<f64>; 2],
+    /// ρ.
+    pub tangent: Vector3<f64>,
+}
+
+impl Frame {
+    /// The frame at a point, if everything in it is defined.
+    pub fn at<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Option<Self> {
+        let outputs = path.outputs(&[0, 1, 2].map(|axis| Series::constant(position[axis])));
+        let [g1, g2] = outputs.gradients;
+        let frame = Self {
+            position,
+            surfaces: [outputs.surfaces[0].value(), outputs.surfaces[1].value()],
+            gradients: outputs.gradients,
+            tangent: outputs.tangent,
+        };
+        let finite = position.iter().chain(&g1).chain(&g2).chain(&frame.tangent).chain(&frame.surfaces);
+        finite.into_iter().all(|value| value.is_finite()).then_some(frame)
+    }
+
+    /// |∇h1 × ∇h2|, 0 where the two surfaces do not cut each other.
+    pub fn regularity(&self) -> f64 {
+        length(&self.gradients[0].cross(&self.gradients[1]))
+    }
+
+    /// Newton's correction towards both surfaces, normal to ρ.
+    pub fn correction(&self) -> Vector3<f64> {
+        let [g1, g2] = self.gradients;
+        let (c1, c2) = (g2.cross(&self.tangent), self.tangent.cross(&g1));
+        -(c1 * self.surfaces[0] + c2 * self.surfaces[1]) / g1.dot(&c1)
+    }
+
+    /// The point of the curve that Newton's method reaches from `position` by corrections of at most `reach` (m).
+    pub fn on_curve<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>, reach: f64) -> Option<Self> {
+        let mut frame = Self::at(path, position)?;
+        for _ in 0..CORRECTIONS {
+            let correction = frame.correction();
+            let size = length(&correction);
+            // A NaN is no such size either.
+            if size.is_nan() || size > reach {
+                return None;
+            }
+            frame = Self::at(path, frame.position + correction)?;
+            if size <= CONVERGED * length(&frame.position).max(1.0) {
+                return Some(frame);
+            }
+        }
+        None
+    }
+
+    /// The point of the curve found from a `position` anywhere, with steps of at most `stride` (m) on the way.
+    pub fn sought<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>, stride: f64) -> Option<Self> {
+        let mut position = position;
+        for _ in 0..STRIDES {
+            let correction = Self::at(path, position)?.correction();
+            let size = length(&correction);
+            if size <= stride {
+                return Self::on_curve(path, position, stride);
+            }
+            // A NaN, where the surfaces are parallel, ends the search at the next frame.
+            position += correction * (stride / size);
+        }
+        None
+    }
+}
+
+/// The motion through a point of the curve that keeps both surfaces at zero, order by order: the k-th coefficient of each is
+/// linear in the k-th of the motion. `speed` gives the latter's component along ρ.
+fn motion<P: Path<f64> + ?Sized>(
+    path: &mut P,
+    frame: &Frame,
+    speed: impl Fn(&Outputs<f64>, &Motion, usize) -> f64,
+) -> Option<Motion> {
+    let [g1, g2] = frame.gradients;
+    // Inverse of the rows ∇h1, ∇h2, ρ by their cross products.
+    let columns = [g2.cross(&frame.tangent), frame.tangent.cross(&g1), g1.cross(&g2)];
+    let determinant = g1.dot(&columns[0]);
+    let mut motion = [Vector3::zeros(); ORDERS];
+    motion[0] = frame.position;
+    for k in 1..ORDERS {
+        let outputs = path.outputs(&series(&motion));
+        let [h1, h2] = &outputs.surfaces;
+        let third = speed(&outputs, &motion, k);
+        motion[k] = (columns[2] * third - columns[0] * h1.0[k] - columns[1] * h2.0[k]) / determinant;
+        if !motion[k].iter().all(|value| value.is_finite()) {
+            return None;
+        }
+    }
+    Some(motion)
+}
+
+/// The motion along the curve at 1 m/s: its coefficients are those of the curve by arc length.
+pub fn unit_speed<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame) -> Option<Motion> {
+    motion(path, frame, |_, motion, k| {
+        if k == 1 {
+            return 1.0;
+        }
+        // The (k−1)-th coefficient of |ṗ|² is 2k ρ·p_k + Σ (j+1)(k−j) p_{j+1}·p_{k−j}, and zero.
+        let known: f64 = (1..k - 1).map(|j| ((j + 1) * (k - j)) as f64 * motion[j + 1].dot(&motion[k - j])).sum();
+        -known / (2.0 * k as f64)
+    })
+}
+
+/// The motion along the curve at the path's own speed v_d: all outputs and their derivatives are zero on it.
+pub fn prescribed_speed<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame) -> Option<Motion> {
+    motion(path, frame, |outputs, _, k| -outputs.speed_error.0[k - 1] / k as f64)
+}
+
+/// ψ_d and its first two derivatives along a motion, rad/sᵏ.
+pub fn yaw<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> [f64; 3] {
+    let yaw = path.outputs(&series(motion)).yaw;
+    [0, 1, 2].map(|k| yaw.derivative(k))
+}
+
+/// A motion as the series that paths take.
+fn series(motion: &Motion) -> [Series<f64, ORDERS>; 3] {
+    [0, 1, 2].map(|axis| Series(motion.map(|coefficient| coefficient[axis])))
+}
+
+/// The same motion run at `factor` times the speed.
+pub fn at_speed(motion: &Motion, factor: f64) -> Motion {
+    let mut scaled = *motion;
+    let mut power = 1.0;
+    for coefficient in &mut scaled {
+        *coefficient *= power;
+        power *= factor;
+    }
+    scaled
+}
+
+/// |v|. (nalgebra's own norms need its `std`, which the controller does without.)
+pub fn length(v: &Vector3<f64>) -> f64 {
+    v.dot(v).sqrt()
+}

@@ -1,0 +1,172 @@
+//! Walking a curve once round: by its tangent forwards, by Newton's method back onto it, in steps that follow its bends.
+
+use super::lap::{Lap, Node};
+use super::probe::{Frame, length, unit_speed};
+use super::refusal::{Place, Reason, Refusal};
+use controller::{Path, Vector3};
+
+/// Largest turn of the tangent over one step, rad. A cubic through both ends with their tangents is then within
+/// R·0.02⁴/384 = 4e-10 R of the curve.
+const TURN: f64 = 0.02;
+/// Largest step as a part of the curve's extent so far, so that straight stretches do not hide a bend behind them.
+const STRETCH: f64 = 0.01;
+/// First step, m, and the extent that steps are first measured against.
+const FIRST_STEP: f64 = 1e-3;
+/// A step this much smaller than the extent that still turns too far is a kink: a bend of radius 5e-6 of the extent.
+const SMALLEST: f64 = 1e-7;
+/// Most steps of one lap.
+const STEPS: usize = 200_000;
+/// Furthest a closed curve may be from the origin, m: the range of the controller's own curves.
+const FURTHEST: f64 = 1e5;
+/// |∇h1 × ∇h2| below this part of its largest value on the lap is zero up to rounding.
+const IRREGULAR: f64 = 1e-6;
+
+/// Walks the curve from `start`, a point on it, along ρ.
+///
+/// # Errors
+/// [`Refusal`] with the place where it is not a closed, smooth, regular curve.
+pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Refusal> {
+    let mut nodes = vec![node(path, &start, 0.0)?];
+    let mut frame = start;
+    let mut arc = 0.0;
+    let mut extent = FIRST_STEP / STRETCH;
+    let mut step = FIRST_STEP;
+    for _ in 0..STEPS {
+        step = step.min(STRETCH * extent);
+        let (next, taken) = advance(path, &frame, step, extent, arc)?;
+        let turn = angle(&frame.tangent, &next.tangent);
+        let chord = length(&(next.position - frame.position));
+
+        let before = (frame.position - start.position).dot(&start.tangent);
+        let after = (next.position - start.position).dot(&start.tangent);
+        let near = length(&(next.position - start.position)) < 2.0 * taken;
+        if nodes.len() > 3 && before < 0.0 && after >= 0.0 && near && next.tangent.dot(&start.tangent) > 0.0 {
+            let last = length(&(start.position - frame.position));
+            arc += arc_of(last, angle(&frame.tangent, &start.tangent));
+            nodes.push(Node { arc, ..nodes[0] });
+            regular(path, &nodes)?;
+            return Ok(Lap::new(nodes));
+        }
+
+        arc += arc_of(chord, turn);
+        frame = next;
+        extent = extent.max(length(&(frame.position - start.position)));
+        if length(&frame.position) > FURTHEST {
+            return Err(Reason::Open.at(Place { position: frame.position, arc }));
+        }
+        nodes.push(node(path, &frame, arc)?);
+        step = if turn < TURN / 2.0 { taken * 1.5 } else { taken };
+    }
+    Err(Reason::Endless.at(Place { position: frame.position, arc }))
+}
+
+/// The next point along the curve and the step that led there, halved until the curve is smooth over it.
+fn advance<P: Path<f64> + ?Sized>(
+    path: &mut P,
+    frame: &Frame,
+    step: f64,
+    extent: f64,
+    arc: f64,
+) -> Result<(Frame, f64), Refusal> {
+    let here = Place { position: frame.position, arc };
+    let mut step = step;
+    loop {
+        let ahead = frame.position + frame.tangent * step;
+        // A bend of TURN leaves its tangent by half TURN of the step.
+        let next = Frame::on_curve(path, ahead, TURN * step);
+        let reason = match next {
+            Some(next) => {
+                let turn = angle(&frame.tangent, &next.tangent);
+                if turn <= TURN {
+                    return Ok((next, step));
+                }
+                Reason::Kink { turn }
+            }
+            None if Frame::at(path, ahead).is_none() => Reason::Undefined,
+            None => Reason::Ends,
+        };
+        step *= 0.5;
+        if step < SMALLEST * extent {
+            return Err(reason.at(here));
+        }
+    }
+}
+
+/// A point of the lap with the curve's derivatives there.
+fn node<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Node, Refusal> {
+    let place = Place { position: frame.position, arc };
+    let motion = unit_speed(path, frame).ok_or_else(|| Reason::NotSmooth.at(place))?;
+    Ok(Node { arc, motion, regularity: frame.regularity() })
+}
+
+/// Looks between the nodes for a point where |∇h1 × ∇h2| is zero: the surfaces touch, or the curve crosses itself.
+fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
+    let largest = nodes.iter().map(|node| node.regularity).fold(0.0, f64::max);
+    for [before, here, after] in nodes.array_windows() {
+        if here.regularity > before.regularity || here.regularity > after.regularity {
+            continue;
+        }
+        // Golden section, until the bracket is rounding.
+        let chord = after.position() - before.position();
+        let mut at = |part: f64| {
+            Frame::on_curve(path, before.position() + chord * part, length(&chord))
+                .map_or((0.0, before.position()), |frame| (frame.regularity(), frame.position))
+        };
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        let ratio = (5.0_f64.sqrt() - 1.0) / 2.0;
+        while high - low > 1e-9 {
+            let (left, right) = (high - ratio * (high - low), low + ratio * (high - low));
+            if at(left).0 < at(right).0 { high = right } else { low = left }
+        }
+        let (least, position) = at(0.5 * (low + high));
+        if least < IRREGULAR * largest {
+            let arc = before.arc + length(&(position - before.position()));
+            return Err(Reason::Irregular.at(Place { position, arc }));
+        }
+    }
+    Ok(())
+}
+
+/// Length of an arc from its chord and turn: chord·(θ/2)/sin(θ/2), to fourth order in θ.
+fn arc_of(chord: f64, turn: f64) -> f64 {
+    chord * (1.0 + turn * turn / 24.0)
+}
+
+/// Angle between two unit vectors, rad; exact for small ones too.
+pub fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
+    length(&a.cross(b)).atan2(a.dot(b))
+}
+
+/// A point of the curve to start from: the one reached from `hint`, or else from points spread over ever larger boxes.
+///
+/// # Errors
+/// [`Refusal`] if there is no curve near any of them.
+pub fn find<P: Path<f64> + ?Sized>(path: &mut P, hint: Vector3<f64>) -> Result<Frame, Refusal> {
+    let boxes = [1.0, 3.0, 10.0, 30.0, 100.0, 1000.0];
+    let spread = boxes.iter().flat_map(|&half| {
+        (1..=40_u32).map(move |i| {
+            let part = |base| half * (2.0 * van_der_corput(i, base) - 1.0);
+            (Vector3::new(part(2), part(3), part(5)), half)
+        })
+    });
+    let mut defined = false;
+    for (from, stride) in std::iter::once((hint, 10.0)).chain(spread) {
+        defined |= Frame::at(path, from).is_some();
+        if let Some(frame) = Frame::sought(path, from, stride) {
+            return Ok(frame);
+        }
+    }
+    let reason = if defined { Reason::NoCurve } else { Reason::Undefined };
+    Err(reason.at(Place { position: hint, arc: 0.0 }))
+}
+
+/// The i-th number of van der Corput's sequence in [0, 1): with bases 2, 3, 5 a Halton sequence.
+fn van_der_corput(mut i: u32, base: u32) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0);
+    while i > 0 {
+        digit /= f64::from(base);
+        value += digit * f64::from(i % base);
+        i /= base;
+    }
+    value
+}
