@@ -1,9 +1,11 @@
 //! A closed curve as walked once: its points by arc length, the nearest of them to any point, and its distance from itself.
 
 use super::probe::{Motion, length};
-use super::refusal::Place;
+use super::refusal::{Place, Reason, Refusal};
 use controller::Vector3;
 
+/// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
+const SAME_POINT: f64 = 1e-6;
 /// A point of a lap.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
@@ -130,6 +132,20 @@ impl Lap {
             }
         }
         closest
+    }
+
+    /// [`closest_branches`](Self::closest_branches), refused if they meet.
+    ///
+    /// # Errors
+    /// [`Refusal`] with the crossing's place.
+    pub fn branches(&self) -> Result<Option<Approach>, Refusal> {
+        let branches = self.closest_branches();
+        match branches {
+            Some(Approach { distance, here, there }) if distance < SAME_POINT / self.sharpest().curvature() => {
+                Err(Reason::Crossing { other: there.arc }.at(here))
+            }
+            _ => Ok(branches),
+        }
     }
 
     /// The nearest point within the segments on both sides of the node `index`, which is not the last.

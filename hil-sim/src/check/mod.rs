@@ -149,8 +149,6 @@ pub struct Report {
     pub fastest: Option<Fastest>,
 }
 
-/// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
-const SAME_POINT: f64 = 1e-6;
 /// Range of the search for the highest speed, m/s.
 pub const SPEED_LIMIT: f64 = 100.0;
 /// Its lower end, m/s.
@@ -169,12 +167,7 @@ pub fn check<P: Path<f64> + ?Sized>(
 ) -> Result<Report, Refusal> {
     let start = walk::find(path, hint)?;
     let lap = walk::walk(path, start)?;
-    let branches = lap.closest_branches();
-    if let Some(Approach { distance, here, there }) = branches
-        && distance < SAME_POINT / lap.sharpest().curvature()
-    {
-        return Err(Reason::Crossing { other: there.arc }.at(here));
-    }
+    let branches = lap.branches()?;
 
     let motions = motions(path, &lap)?;
     let mut lap_time = 0.0;
