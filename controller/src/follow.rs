@@ -6,6 +6,7 @@
 use nalgebra::Vector3;
 
 use crate::actuator::ActuatorLimits;
+use crate::approach::{Approach, ApproachLimits};
 use crate::compensator::Command;
 use crate::disturbance::{Disturbance, ObserverParams};
 use crate::envelope::Margins;
@@ -177,6 +178,7 @@ pub struct Follower<T, P> {
     path: P,
     gains: Gains<T>,
     integral: [T; 3],
+    approach: Approach<T>,
     sampler: Sampler<T>,
 }
 
@@ -193,7 +195,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
             gains.k2[0] += gains.integral[1] * lead;
             gains.k3[0] += gains.integral[2] * lead;
         }
-        Ok(Self { path, gains, integral: [T::zero(); 3], sampler })
+        Ok(Self { path, gains, integral: [T::zero(); 3], approach: Approach::none(), sampler })
     }
 
     /// With disturbance observers, reset.
@@ -211,14 +213,37 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     /// Starts from a stated ζ with integrals and disturbances at zero. Hover is ζ = 0.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
         self.sampler.start(state, zeta);
-        self.integral = [T::zero(); 3];
+        self.begin(state);
     }
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust: the first command's thrust and
     /// its first two derivatives continue it. Integrals and disturbances start at zero.
     pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
         self.sampler.engage(state, applied);
+        self.begin(state);
+    }
+
+    /// Joins the path from afar, within `limits`: [engages](Self::engage), and slides the path from where the payload is to where it
+    /// belongs. An error names the limit that is out of range; `false` if no point of the path was found, and nothing is engaged.
+    pub fn join(
+        &mut self,
+        state: &State<T>,
+        applied: Command<T>,
+        limits: &ApproachLimits<T>,
+    ) -> Result<bool, OutOfRange<T>> {
+        let vehicle = self.sampler.vehicle();
+        limits.check(vehicle)?;
+        let Some(approach) = Approach::start(vehicle, &mut self.path, limits, state) else { return Ok(false) };
+        self.sampler.engage(state, applied);
         self.integral = [T::zero(); 3];
+        self.approach = approach;
+        Ok(true)
+    }
+
+    fn begin(&mut self, state: &State<T>) {
+        self.path.engage(&state.position);
+        self.integral = [T::zero(); 3];
+        self.approach = Approach::none();
     }
 
     /// The command for the coming hold, from the state sampled now. Call once every period.
@@ -226,9 +251,11 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     pub fn step(&mut self, sampled: &State<T>) -> Solution<T, Xi<T>> {
         let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
         let vehicle = self.sampler.vehicle();
-        let mut solution = law(vehicle, &mut self.path, &self.gains, &state, &zeta, &self.integral, &disturbance);
+        let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
+        let mut solution = law(vehicle, &mut path, &self.gains, &state, &zeta, &self.integral, &disturbance);
         solution.command = self.sampler.hold(sampled, &solution.command, solution.u_zeta, &solution.margins);
         let period = self.sampler.period();
+        self.approach.advance(period);
         let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
         for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
             *integral += period * h;
@@ -239,6 +266,11 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     /// ζ when the next command begins to act (the next sample, without latency and lag).
     pub fn zeta(&self) -> &[T; 4] {
         self.sampler.zeta()
+    }
+
+    /// The approach under way, if any.
+    pub fn approach(&self) -> &Approach<T> {
+        &self.approach
     }
 
     /// ξ̃ = ∫(h1, h2, h3) up to the next sample.

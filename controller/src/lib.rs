@@ -37,6 +37,7 @@
 
 pub mod actuator;
 pub mod analytic;
+pub mod approach;
 pub mod compensator;
 pub mod disturbance;
 pub mod dual;
@@ -58,6 +59,7 @@ pub mod yaw;
 
 pub use actuator::ActuatorLimits;
 pub use analytic::Analytic;
+pub use approach::ApproachLimits;
 pub use compensator::Command;
 pub use disturbance::{Disturbance, ObserverParams};
 pub use envelope::Margins;

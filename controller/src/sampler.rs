@@ -54,6 +54,9 @@ impl<T: Real> Sampling<T> {
     }
 }
 
+/// Time constant with which the torque passes from what was applied before a take-over to the law's, s.
+const TAKE_OVER: f64 = 0.05;
+
 /// Where a law is to be evaluated: state, ζ and disturbance at the instant its command acts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead<T> {
@@ -73,6 +76,10 @@ pub struct Sampler<T> {
     /// prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
+    /// What is left of the torque's step at a take-over, N·m; `None` until the first command shows the step.
+    bump: Option<Vector3<T>>,
+    /// What a period leaves of it.
+    fade: T,
     limits: ActuatorLimits<T>,
     actuators: Actuators<T>,
     observer: Observer<T>,
@@ -92,6 +99,8 @@ impl<T: Real> Sampler<T> {
             horizon,
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
+            bump: Some(Vector3::zeros()),
+            fade: (-period / T::lit(TAKE_OVER)).exp(),
             limits: ActuatorLimits::none(),
             actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
             observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
@@ -119,11 +128,13 @@ impl<T: Real> Sampler<T> {
     pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
         let zeta = continuing(&self.vehicle, state, &applied, &Disturbance::none());
         self.reset(state, zeta, applied);
+        self.bump = None;
     }
 
     fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
         self.zeta = zeta;
         self.u_zeta = T::zero();
+        self.bump = Some(Vector3::zeros());
         self.actuators.reset(applied);
         let acceleration = Model::at(&self.vehicle, state).acceleration(&applied, &Disturbance::none());
         self.observer.reset(state, &acceleration);
@@ -152,7 +163,10 @@ impl<T: Real> Sampler<T> {
         u_zeta: T,
         margins: &Margins<T>,
     ) -> Command<T> {
-        let applied = self.limits.limit(command);
+        let bump = self.bump.unwrap_or_else(|| self.actuators.before().torque - command.torque);
+        self.bump = Some(bump * self.fade);
+        let smooth = Command { thrust: command.thrust, torque: command.torque + bump };
+        let applied = self.limits.limit(&smooth);
         self.actuators.push(applied);
         let model = Model::at(&self.vehicle, sampled);
         self.observer.predict(&model.acceleration(self.actuators.after(), self.observer.estimate()));

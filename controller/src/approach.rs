@@ -1,0 +1,353 @@
+//! Joining a path from afar: the path starts where the payload is, and slides home.
+//!
+//! At engagement the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law then follows the curve displaced by
+//!
+//! ```text
+//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0
+//! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶      (I the regularized incomplete beta function)
+//! ```
+//!
+//! which starts where the payload is and as fast as it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives zero
+//! at either end, so the displacement asks for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is,
+//! go to the path's along with the slide. T_b and T are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt, rod angle and
+//! thrust, and the slide the one on speed. The displacement is rigid, so this works for any path, in metres, and meets no singularity of the curve's
+//! functions on the way.
+
+use nalgebra::Vector3;
+
+use crate::analytic::Analytic;
+use crate::error::OutOfRange;
+use crate::lift::PositionSeries;
+use crate::path::{Outputs, Path};
+use crate::scalar::Real;
+use crate::series::Series;
+use crate::state::State;
+use crate::vehicle::Vehicle;
+use crate::yaw::Yaw;
+
+/// max |S′|, |S″|, |S‴| and |S⁗| of the profile over x ∈ [0, 1].
+const PEAKS: [f64; 4] = [2.932_617_187_5, 13.176_705_784, 140.765_625, 1_341.111_326];
+
+/// The speed and the yaw need time even where the distance needs none, s.
+const SHORTEST: f64 = 3.0;
+
+/// What an approach may ask of the vehicle, on top of the path itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ApproachLimits<T> {
+    /// Speed of the slide, m/s.
+    pub speed: T,
+    /// Acceleration of the slide, m/s².
+    pub acceleration: T,
+    /// Tilt of the thrust, rad, up to 1.2.
+    pub tilt: T,
+    /// Angle of the rod from the vertical, rad, up to 1.2.
+    pub rod_angle: T,
+    /// Least total thrust, N, below the hover thrust.
+    pub min_thrust: T,
+    /// Largest total thrust, N, above the hover thrust.
+    pub max_thrust: T,
+}
+
+impl<T: Real> ApproachLimits<T> {
+    /// 3 m/s, 1.5 m/s², 20° of tilt and rod angle, thrust within ±30 % of hover.
+    pub fn gentle(vehicle: &Vehicle<T>) -> Self {
+        let hover = vehicle.hover_thrust();
+        Self {
+            speed: T::lit(3.0),
+            acceleration: T::lit(1.5),
+            tilt: T::lit(0.35),
+            rod_angle: T::lit(0.35),
+            min_thrust: hover * T::lit(0.7),
+            max_thrust: hover * T::lit(1.3),
+        }
+    }
+
+    pub(crate) fn check(&self, vehicle: &Vehicle<T>) -> Result<(), OutOfRange<T>> {
+        let hover = vehicle.hover_thrust().to_f64();
+        OutOfRange::check("speed", self.speed, 0.01, 100.0)?;
+        OutOfRange::check("acceleration", self.acceleration, 0.01, 100.0)?;
+        OutOfRange::check("tilt", self.tilt, 0.01, 1.2)?;
+        OutOfRange::check("rod_angle", self.rod_angle, 0.01, 1.2)?;
+        OutOfRange::check("min_thrust", self.min_thrust, 0.0, 0.999 * hover)?;
+        OutOfRange::check("max_thrust", self.max_thrust, 1.001 * hover, 1e6)
+    }
+
+    /// The largest acceleration (m/s²) and snap (m/s⁴) of the payload that keep the limits. An acceleration a needs a rod angle of
+    /// atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a: half of the tilt is for either.
+    fn derivatives(&self, vehicle: &Vehicle<T>) -> (T, T) {
+        let params = vehicle.params();
+        let gravity = params.gravity;
+        let per_mass = vehicle.per_total_mass;
+        let leaning = |angle: T| {
+            let (sin, cos) = angle.sin_cos();
+            gravity * sin / (sin + cos)
+        };
+        let tilting = leaning(self.tilt) * T::lit(0.5);
+        let acceleration = self
+            .acceleration
+            .min(leaning(self.rod_angle))
+            .min(tilting)
+            .min(self.max_thrust * per_mass - gravity)
+            .min(gravity - self.min_thrust * per_mass);
+        let swing = params.uav_mass * per_mass * params.rod_length / gravity;
+        (acceleration, tilting / swing)
+    }
+
+    /// The shortest time, s, to brake from `speed`.
+    fn braking(&self, vehicle: &Vehicle<T>, speed: T) -> T {
+        let (acceleration, snap) = self.derivatives(vehicle);
+        let [peak_1, _, peak_3, _] = PEAKS.map(T::lit);
+        // The cube root by way of the logarithm: once, at engagement.
+        let by_snap = ((peak_3 * speed / snap + T::lit(1e-9)).ln() * T::lit(1.0 / 3.0)).exp();
+        (peak_1 * speed / acceleration).max(by_snap)
+    }
+
+    /// The shortest time, s, to slide over `distance`.
+    fn sliding(&self, vehicle: &Vehicle<T>, distance: T) -> T {
+        let (acceleration, snap) = self.derivatives(vehicle);
+        let [peak_1, peak_2, _, peak_4] = PEAKS.map(T::lit);
+        (peak_1 * distance / self.speed)
+            .max((peak_2 * distance / acceleration).sqrt())
+            .max((peak_4 * distance / snap).sqrt().sqrt())
+    }
+}
+
+/// A slide under way, or none.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach<T> {
+    /// D + V T_b/2, m.
+    displacement: Vector3<T>,
+    /// V, m/s.
+    velocity: Vector3<T>,
+    /// v_d − 0 and ψ − ψ_d at engagement.
+    speed: T,
+    yaw: T,
+    elapsed: T,
+    /// T_b and T, s.
+    braking: T,
+    sliding: T,
+}
+
+impl<T: Real> Approach<T> {
+    /// None: the path itself.
+    pub fn none() -> Self {
+        let zero = T::zero();
+        Self {
+            displacement: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            speed: zero,
+            yaw: zero,
+            elapsed: zero,
+            braking: zero,
+            sliding: zero,
+        }
+    }
+
+    /// From `state`. `None` if no point of the path is found: the search is Newton's on h1 = h2 = 0 with steps of least length, at most 50
+    /// of them.
+    pub(crate) fn start<P: Path<T> + ?Sized>(
+        vehicle: &Vehicle<T>,
+        path: &mut P,
+        limits: &ApproachLimits<T>,
+        state: &State<T>,
+    ) -> Option<Self> {
+        let State { position, velocity, .. } = state;
+        path.engage(position);
+        let nearest = nearest_point(path, position)?;
+        path.engage(&nearest);
+        let outputs = path.outputs(&[nearest.x, nearest.y, nearest.z].map(Series::constant));
+        let shortest = T::lit(SHORTEST);
+        let braking = limits.braking(vehicle, length(velocity)).max(shortest);
+        let displacement = position - nearest + velocity * (braking * T::lit(0.5));
+        let sliding = limits.sliding(vehicle, length(&displacement)).max(shortest);
+        Some(Self {
+            displacement,
+            velocity: *velocity,
+            speed: outputs.speed_error.value(),
+            yaw: (Yaw::of(state).angle - outputs.yaw.value()).wrap_angle(),
+            elapsed: T::zero(),
+            sliding,
+            braking,
+        })
+    }
+
+    fn duration(&self) -> T {
+        self.braking + self.sliding
+    }
+
+    /// Whether the path is still displaced.
+    pub fn is_active(&self) -> bool {
+        self.elapsed < self.duration()
+    }
+
+    /// Time left, s.
+    pub fn remaining(&self) -> T {
+        (self.duration() - self.elapsed).max(T::zero())
+    }
+
+    /// One control period on.
+    #[inline]
+    pub(crate) fn advance(&mut self, period: T) {
+        if self.is_active() {
+            self.elapsed += period;
+        }
+    }
+
+    /// `path` as displaced `ahead` s from now.
+    #[inline]
+    pub(crate) fn displace<'a, P: ?Sized>(&'a self, path: &'a mut P, ahead: T) -> Displaced<'a, T, P> {
+        Displaced { path, approach: self, elapsed: self.elapsed + ahead }
+    }
+}
+
+/// S(t/`duration`) about t = `elapsed` as a series in time, and ∫S from t to `duration`. S is 1 before and 0 after.
+#[inline]
+fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
+    let zero = T::zero();
+    let half = T::lit(0.5);
+    let rate = T::one() / duration;
+    let x = (elapsed * rate).clamp(T::zero(), T::one());
+    let y = T::one() - x;
+    let xy = x * y;
+    // The slope by the power of a quadratic, the value by the finite sum of I_y(7, 7) = y⁷ Σ_{j<7} C(6 + j, j) xʲ.
+    let quadratic = Series([xy, (y - x) * rate, -(rate * rate), zero, zero, zero]);
+    let sixth = (quadratic.square() * quadratic).square();
+    let Series([s0, s1, s2, s3, s4, s5]) = sixth * (T::lit(-12012.0) * rate);
+    let sum = [924.0, 462.0, 210.0, 84.0, 28.0, 7.0, 1.0].iter().fold(zero, |sum, &c| sum * x + T::lit(c));
+    let y2 = y * y;
+    let value = y2 * y2 * y2 * y * sum;
+    let area = ((y - half) * value + T::lit(858.0) * sixth.value() * xy) * duration;
+    let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
+    (Series([value, s0, s1 * c2, s2 * c3, s3 * c4, s4 * c5, s5 * c6]), area)
+}
+
+#[inline]
+fn length<T: Real>(v: &Vector3<T>) -> T {
+    v.dot(v).sqrt()
+}
+
+/// A path displaced by a slide.
+pub(crate) struct Displaced<'a, T, P: ?Sized> {
+    path: &'a mut P,
+    approach: &'a Approach<T>,
+    elapsed: T,
+}
+
+impl<T: Real, P: Path<T> + ?Sized> Path<T> for Displaced<'_, T, P> {
+    #[inline]
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+        let Approach { displacement, velocity, speed, yaw, braking, sliding, .. } = self.approach;
+        if self.elapsed >= *braking + *sliding {
+            return self.path.outputs(position);
+        }
+        let (slide, _) = profile(self.elapsed - *braking, *sliding);
+        let (brake, area) = profile(self.elapsed, *braking);
+        // E: its derivative is the brake's S.
+        let Series([b0, b1, b2, b3, b4, b5, _]) = brake;
+        let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
+        let brake = Series([-area, b0, b1 * c2, b2 * c3, b3 * c4, b4 * c5, b5 * c6]);
+        let [x, y, z] = position;
+        let home = [
+            *x - slide * displacement.x - brake * velocity.x,
+            *y - slide * displacement.y - brake * velocity.y,
+            *z - slide * displacement.z - brake * velocity.z,
+        ];
+        let mut outputs = self.path.outputs(&home);
+        outputs.speed_error = outputs.speed_error - slide.truncate() * *speed;
+        outputs.yaw += slide.truncate() * *yaw;
+        outputs
+    }
+}
+
+/// A point of the path near `position`.
+fn nearest_point<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Option<Vector3<T>> {
+    const STEPS: usize = 50;
+    // A step longer than this is cut: far from the curve its functions may be strongly curved.
+    let longest = T::lit(5.0);
+    // On the curve to within what f32 resolves at a hundred metres.
+    let close = T::lit(1e-4);
+    let mut point = *position;
+    for _ in 0..STEPS {
+        let outputs = path.outputs(&[point.x, point.y, point.z].map(Series::constant));
+        let [h1, h2] = outputs.surfaces.map(|h| h.value());
+        let [g1, g2] = &outputs.gradients;
+        let (a, b, c) = (g1.dot(g1), g1.dot(g2), g2.dot(g2));
+        let determinant = a * c - b * b;
+        let mut step = (g1 * (c * h1 - b * h2) + g2 * (a * h2 - b * h1)) / determinant;
+        let length = step.dot(&step).sqrt();
+        if !length.is_finite() {
+            return None;
+        }
+        if length > longest {
+            step *= longest / length;
+        }
+        point -= step;
+        if length < close {
+            return Some(point);
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::VehicleParams;
+
+    #[test]
+    fn profile_falls_from_one_to_zero_with_six_flat_derivatives() {
+        for (elapsed, value) in [(0.0, 1.0), (2.0, 0.5), (4.0, 0.0), (5.0, 0.0)] {
+            let (profile, area) = profile(elapsed, 4.0_f64);
+            assert!((profile.value() - value).abs() < 1e-12, "{elapsed}");
+            assert!(elapsed > 0.0 || (area - 2.0).abs() < 1e-12, "{area}");
+            assert!(elapsed < 4.0 || area == 0.0, "{area}");
+        }
+        for elapsed in [0.0, 4.0, 5.0] {
+            for k in 1..=6 {
+                assert!(profile(elapsed, 4.0_f64).0.derivative(k).abs() < 1e-12, "{elapsed} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn profile_series_predicts_the_profile_and_its_integral() {
+        for i in 1..40 {
+            let (elapsed, dt) = (0.1 * f64::from(i), 0.01);
+            let (now, area) = profile(elapsed, 4.0_f64);
+            let (then, area_then) = profile(elapsed + dt, 4.0);
+            // The seventh term: |S⁽⁷⁾| ≤ 7.9e6/T⁷, over 7!.
+            let bound = 7.9e6 / 4.0_f64.powi(7) * dt.powi(7) / 5040.0 + 1e-14;
+            assert!((now.shift(dt).value() - then.value()).abs() <= bound, "{elapsed}");
+            let integral: f64 = now.0.iter().zip(1..).map(|(c, k)| c * dt.powi(k) / f64::from(k)).sum();
+            assert!((area - area_then - integral).abs() <= bound * dt + 1e-14, "{elapsed}");
+        }
+    }
+
+    #[test]
+    fn peaks_are_the_profile_s() {
+        let mut found = [0.0_f64; 4];
+        for i in 0..=100_000 {
+            let (profile, _) = profile(f64::from(i) * 1e-5, 1.0);
+            for (found, k) in found.iter_mut().zip(1..) {
+                *found = found.max(profile.derivative(k).abs());
+            }
+        }
+        for (found, stated) in found.iter().zip(PEAKS) {
+            assert!((found / stated - 1.0).abs() < 1e-6, "{found} against {stated}");
+        }
+    }
+
+    #[test]
+    fn durations_keep_speed_and_acceleration() {
+        let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
+        let limits = ApproachLimits::gentle(&vehicle);
+        for size in [0.1, 1.0, 20.0, 50.0] {
+            let sliding = limits.sliding(&vehicle, size);
+            let braking = limits.braking(&vehicle, size);
+            let slack = 1.0 + 1e-12;
+            assert!(PEAKS[0] * size / sliding <= limits.speed * slack);
+            assert!(PEAKS[1] * size / sliding.powi(2) <= limits.acceleration * slack);
+            assert!(PEAKS[0] * size / braking <= limits.acceleration * slack);
+        }
+    }
+}
