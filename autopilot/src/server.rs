@@ -23,6 +23,8 @@ pub enum Next {
 pub struct Server {
     bad_frames: u32,
     reported: LoadMode,
+    /// The next parameter of a list that was asked for.
+    listing: Option<usize>,
 }
 
 impl Default for Server {
@@ -35,7 +37,7 @@ impl Server {
     /// Nothing received, nothing reported.
     #[must_use]
     pub const fn new() -> Self {
-        Self { bad_frames: 0, reported: LoadMode::LOAD_MODE_OFF }
+        Self { bad_frames: 0, reported: LoadMode::LOAD_MODE_OFF, listing: None }
     }
 
     /// What the controller says when it has started: it speaks first, since bytes sent to it before are lost.
@@ -86,8 +88,19 @@ impl Server {
         })
     }
 
-    /// A text when the mode has changed since the last call.
-    pub fn mode_change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
+    /// What there is to say unasked: that the mode has changed, or the next parameter of a list. One message a call, since
+    /// a whole list would keep the control step waiting.
+    pub fn news(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
+        if let Some(change) = self.mode_change(autopilot) {
+            return Some(change);
+        }
+        let index = self.listing?;
+        let answer = value(autopilot, index);
+        self.listing = answer.is_some().then_some(index + 1);
+        answer
+    }
+
+    fn mode_change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
         let mode = autopilot.mode();
         if mode == self.reported {
             return None;
@@ -132,11 +145,7 @@ impl Server {
                     None => send(status(MavSeverity::MAV_SEVERITY_WARNING, "no such parameter")),
                 }
             }
-            MavMessage::PARAM_REQUEST_LIST(_) => {
-                for index in 0..crate::Parameters::COUNT {
-                    value(autopilot, index).into_iter().for_each(&mut *send);
-                }
-            }
+            MavMessage::PARAM_REQUEST_LIST(_) => self.listing = Some(0),
             MavMessage::PARAM_SET(request) => set(&request, autopilot, send),
             MavMessage::COMMAND_LONG(request) => return command(&request, autopilot, send),
             MavMessage::TIMESYNC(request) if request.tc1 == 0 => {

@@ -1,0 +1,254 @@
+//! The flight program.
+//!
+//! | priority | task | woken by |
+//! |---|---|---|
+//! | 3 | `control`: one control step, rotors | the control timer; in lockstep, a state frame |
+//! | 3 | `wrap`: extends the cycle counter | the counter's wrap |
+//! | 2 | `exchange`: bytes to messages to bytes | the serial port; `control`, with an answer |
+//! | 1 | `report`: heartbeat, counters, log, status LED | once a second |
+//! | 0 | `idle`: feeds the watchdog while `control` lives | any interrupt |
+//!
+//! What is decided about flight stands in the `autopilot` crate, which the host tests; what is known about a board in its
+//! file under [`board`]. Here they are only connected.
+#![no_std]
+#![no_main]
+
+mod board;
+mod clock;
+
+use defmt_rtt as _;
+
+#[rtic::app(device = crate::board::pac, peripherals = false, dispatchers = [SPI1])]
+mod app {
+    use core::sync::atomic::{AtomicBool, Ordering};
+
+    use autopilot::{Answer, Autopilot, Boot, Drive, Next, Server};
+    use heapless::{Deque, Vec};
+    use link::dialect::LOAD_STATE_DATA;
+    use link::{Decoder, Encoder, MavMessage};
+
+    use crate::board::{self, Board, ControlTimer as _, Led as _, Rotors as _, Serial as _, Watchdog as _};
+    use crate::clock::{self, Clock};
+
+    /// Bytes that wait to be sent: a parameter list comes one by one, so this is some ten frames.
+    const OUTBOX: usize = 2048;
+
+    /// Set by each control interrupt, cleared by whoever feeds the watchdog.
+    static CONTROL_LIVES: AtomicBool = AtomicBool::new(false);
+
+    #[shared]
+    struct Shared {
+        autopilot: Autopilot,
+        server: Server,
+        outbox: Outbox,
+        /// Lockstep: the frame whose step is to be made.
+        frame: Option<LOAD_STATE_DATA>,
+        /// The last step's answer, to be sent.
+        answer: Option<Answer>,
+    }
+
+    #[local]
+    struct Local {
+        timer: board::Timer,
+        rotors: board::RotorOutputs,
+        serial: board::SerialPort,
+        decoder: Decoder,
+        led: board::StatusLed,
+        watchdog: board::Dog,
+    }
+
+    /// Frames as bytes on their way out.
+    pub struct Outbox {
+        encoder: Encoder,
+        bytes: Deque<u8, OUTBOX>,
+        lost: u32,
+    }
+
+    impl Outbox {
+        /// The whole frame or nothing of it.
+        fn send(&mut self, message: &MavMessage) {
+            let frame = self.encoder.frame(message);
+            if self.bytes.capacity() - self.bytes.len() < frame.bytes().len() {
+                self.lost = self.lost.wrapping_add(frame.bytes().len() as u32);
+                return;
+            }
+            for &byte in frame.bytes() {
+                let _ = self.bytes.push_back(byte);
+            }
+        }
+    }
+
+    #[init]
+    fn init(cx: init::Context) -> (Shared, Local) {
+        let Board { boot, mut timer, rotors, serial, led, watchdog } = board::start();
+        clock::start(cx.core.SYST, boot.core_hz);
+        let Boot { core_hz, by_watchdog, internal_clock, watchdog_resets } = boot;
+        defmt::info!("{=u32} Hz, crystal: {=bool}", core_hz, !internal_clock);
+        if by_watchdog {
+            defmt::error!("reset by the watchdog, {=u32} times since power-on", watchdog_resets);
+        }
+        let autopilot = Autopilot::new(boot);
+        let server = Server::new();
+        let mut outbox = Outbox { encoder: Encoder::new(link::CONTROLLER), bytes: Deque::new(), lost: 0 };
+        server.greet(&autopilot, &mut |message| outbox.send(&message));
+        timer.set_period(autopilot.period_s());
+        board::pend_link();
+        (
+            Shared { autopilot, server, outbox, frame: None, answer: None },
+            Local { timer, rotors, serial, decoder: Decoder::new(), led, watchdog },
+        )
+    }
+
+    #[idle(local = [watchdog])]
+    fn idle(cx: idle::Context) -> ! {
+        loop {
+            if CONTROL_LIVES.swap(false, Ordering::Relaxed) {
+                cx.local.watchdog.feed();
+            }
+            cortex_m::asm::wfi();
+        }
+    }
+
+    #[task(binds = SysTick, priority = 3)]
+    fn wrap(_: wrap::Context) {
+        if clock::wrap() {
+            // Still at work on the last one: there is nothing to add.
+            let _ = report::spawn();
+        }
+    }
+
+    #[task(binds = TIM2, priority = 3, shared = [autopilot, frame, answer], local = [timer, rotors, period_s: f32 = 0.0])]
+    fn control(cx: control::Context) {
+        let control::LocalResources { timer, rotors, period_s, .. } = cx.local;
+        CONTROL_LIVES.store(true, Ordering::Relaxed);
+        let due = timer.take_tick();
+        let start = Clock::now();
+        (cx.shared.autopilot, cx.shared.frame, cx.shared.answer).lock(|autopilot, frame, pending| {
+            let lockstep = autopilot.drive() == Drive::Lockstep;
+            let answer = match frame.take() {
+                Some(frame) if lockstep => Some(autopilot.lockstep(&frame)),
+                _ if due && !lockstep => Some(autopilot.tick()),
+                _ => None,
+            };
+            // Disarmed in lockstep there is no answer, and no rotor turns either.
+            rotors.set(answer.as_ref().map_or([0.0; 4], |answer| answer.outputs));
+            if let Some(mut answer) = answer {
+                autopilot.note_cost(&mut answer, start.elapsed());
+                if !lockstep && timer.is_due() {
+                    autopilot.note_overrun();
+                }
+                if lockstep || autopilot.is_armed() {
+                    *pending = Some(answer);
+                    board::pend_link();
+                }
+            }
+            if *period_s != autopilot.period_s() {
+                *period_s = autopilot.period_s();
+                timer.set_period(*period_s);
+            }
+        });
+    }
+
+    #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder])]
+    fn exchange(cx: exchange::Context) {
+        let exchange::LocalResources { serial, decoder, .. } = cx.local;
+        let exchange::SharedResources { mut autopilot, mut server, mut outbox, mut frame, mut answer, .. } = cx.shared;
+
+        while let Some(byte) = serial.receive() {
+            decoder.push(byte, |received| {
+                let mut replies = Vec::<MavMessage, 4>::new();
+                let next = (&mut autopilot, &mut server).lock(|autopilot, server| {
+                    server.handle(received, clock::now_ns(), autopilot, &mut |message| {
+                        // No message has more than three replies.
+                        let _ = replies.push(message);
+                    })
+                });
+                match next {
+                    Next::Nothing => {}
+                    Next::Step(state) => {
+                        frame.lock(|frame| *frame = Some(state));
+                        // Preempts this task here and now.
+                        board::pend_control();
+                    }
+                    Next::Reboot => cortex_m::peripheral::SCB::sys_reset(),
+                }
+                outbox.lock(|outbox| replies.iter().for_each(|reply| outbox.send(reply)));
+            });
+        }
+
+        if let Some(answer) = answer.lock(Option::take) {
+            outbox.lock(|outbox| {
+                if let Some(telemetry) = answer.telemetry {
+                    outbox.send(&MavMessage::LOAD_TELEMETRY(telemetry));
+                }
+                outbox.send(&MavMessage::LOAD_COMMAND(answer.command));
+            });
+        }
+        let news = (&mut autopilot, &mut server).lock(|autopilot, server| server.news(autopilot));
+        if let Some(news) = &news {
+            outbox.lock(|outbox| outbox.send(news));
+        }
+        let waiting = outbox.lock(|outbox| {
+            while let Some(&byte) = outbox.bytes.front() {
+                if !serial.send(byte) {
+                    break;
+                }
+                outbox.bytes.pop_front();
+            }
+            outbox.lost = outbox.lost.wrapping_add(serial.take_lost());
+            !outbox.bytes.is_empty()
+        });
+        serial.wake_when_free(waiting);
+        if news.is_some() {
+            board::pend_link();
+        }
+    }
+
+    #[task(priority = 1, shared = [autopilot, server, outbox], local = [led])]
+    async fn report(cx: report::Context) {
+        let report::SharedResources { mut autopilot, mut server, mut outbox, .. } = cx.shared;
+        cx.local.led.toggle();
+        let lost = outbox.lock(|outbox| outbox.lost);
+        let (heartbeat, counters) = (&mut autopilot, &mut server)
+            .lock(|autopilot, server| (Server::heartbeat(autopilot), server.counters(autopilot, lost)));
+        outbox.lock(|outbox| {
+            outbox.send(&heartbeat);
+            outbox.send(&counters);
+        });
+        board::pend_link();
+        if let MavMessage::LOAD_COUNTERS(c) = &counters {
+            defmt::info!(
+                "steps {=u32} missed {=u32} refused {=u32} overruns {=u32} law faults {=u32} bad frames {=u32} lost bytes {=u32} \
+                 worst {=u32} cycles",
+                c.steps,
+                c.missed,
+                c.refused,
+                c.overruns,
+                c.law_faults,
+                c.bad_frames,
+                c.lost_bytes,
+                c.worst_cycles
+            );
+        }
+    }
+}
+
+/// Rotors off, then a reset: by the watchdog, so that it is counted and reported, or where there is none at once.
+fn fail() -> ! {
+    cortex_m::interrupt::disable();
+    board::stop_rotors();
+    board::reset()
+}
+
+#[panic_handler]
+fn panic(info: &core::panic::PanicInfo<'_>) -> ! {
+    let place = info.location().map_or(("?", 0), |at| (at.file(), at.line()));
+    defmt::error!("panic at {=str}:{=u32}", place.0, place.1);
+    fail()
+}
+
+#[cortex_m_rt::exception]
+unsafe fn HardFault(frame: &cortex_m_rt::ExceptionFrame) -> ! {
+    defmt::error!("hard fault at {=u32:#x}", frame.pc());
+    fail()
+}
