@@ -37,8 +37,6 @@ pub trait Analytic<T: Real>:
     fn recip(self) -> Self;
     /// √x, x > 0.
     fn sqrt(self) -> Self;
-    /// 1/√x, x > 0.
-    fn rsqrt(self) -> Self;
     /// x to a real power, x > 0.
     fn powf(self, exponent: T) -> Self;
     /// eˣ.
@@ -52,6 +50,11 @@ pub trait Analytic<T: Real>:
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;
 
+    /// 1/√x, x > 0.
+    #[inline]
+    fn rsqrt(self) -> Self {
+        self.sqrt().recip()
+    }
     /// sin x, x in rad.
     #[inline]
     fn sin(self) -> Self {
@@ -88,25 +91,9 @@ impl<T: Real, const N: usize> Series<T, N> {
     fn weighted(&self) -> [T; N] {
         let mut weighted = self.0;
         for j in 0..N {
-            weighted[j] *= T::lit(j as f64);
+            weighted[j] *= T::WHOLE[j];
         }
         weighted
-    }
-
-    /// x^α for a constant α, given x₀^α and 1/x₀: from x·ẏ = α·ẋ·y.
-    #[inline]
-    fn power_from(&self, alpha: f64, value: T, inverse: T) -> Self {
-        let mut y = [T::zero(); N];
-        y[0] = value;
-        for k in 1..N {
-            let mut sum = T::zero();
-            for j in 1..=k {
-                let weight = (alpha * j as f64 - (k - j) as f64) / k as f64;
-                sum += self.0[j] * y[k - j] * T::lit(weight);
-            }
-            y[k] = sum * inverse;
-        }
-        Self(y)
     }
 }
 
@@ -148,18 +135,27 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         Self(y)
     }
 
+    /// From y² = x, in which the newest coefficient of y stands twice.
     #[inline]
     fn sqrt(self) -> Self {
-        self.power_from(0.5, self.0[0].sqrt(), T::one() / self.0[0])
+        let mut y = [T::zero(); N];
+        y[0] = self.0[0].sqrt();
+        let per_twice = T::one() / (y[0] + y[0]);
+        for k in 1..N {
+            let mut half = T::zero();
+            for j in 1..k.div_ceil(2) {
+                half += y[j] * y[k - j];
+            }
+            let mut rest = self.0[k] - (half + half);
+            if k % 2 == 0 {
+                rest -= y[k / 2] * y[k / 2];
+            }
+            y[k] = rest * per_twice;
+        }
+        Self(y)
     }
 
-    #[inline]
-    fn rsqrt(self) -> Self {
-        let inverse = T::one() / self.0[0];
-        self.power_from(-0.5, self.0[0].sqrt() * inverse, inverse)
-    }
-
-    /// From x·ẏ = α·ẋ·y, with α known at run time only.
+    /// From x·ẏ = α·ẋ·y.
     #[inline]
     fn powf(self, exponent: T) -> Self {
         let inverse = T::one() / self.0[0];
@@ -169,9 +165,9 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         for k in 1..N {
             let mut sum = T::zero();
             for j in 1..=k {
-                sum += (exponent * weighted[j] - self.0[j] * T::lit((k - j) as f64)) * y[k - j];
+                sum += (exponent * weighted[j] - self.0[j] * T::WHOLE[k - j]) * y[k - j];
             }
-            y[k] = sum * inverse * T::lit(1.0 / k as f64);
+            y[k] = sum * inverse * T::RECIPROCAL[k];
         }
         Self(y)
     }
@@ -187,7 +183,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
             for j in 1..=k {
                 sum += weighted[j] * y[k - j];
             }
-            y[k] = sum * T::lit(1.0 / k as f64);
+            y[k] = sum * T::RECIPROCAL[k];
         }
         Self(y)
     }
@@ -200,12 +196,12 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut weighted = [T::zero(); N];
         y[0] = self.0[0].ln();
         for k in 1..N {
-            let mut sum = self.0[k] * T::lit(k as f64);
+            let mut sum = self.0[k] * T::WHOLE[k];
             for j in 1..k {
                 sum -= weighted[j] * self.0[k - j];
             }
             weighted[k] = sum * inverse;
-            y[k] = weighted[k] * T::lit(1.0 / k as f64);
+            y[k] = weighted[k] * T::RECIPROCAL[k];
         }
         Self(y)
     }
@@ -223,7 +219,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
                 sin_sum += weighted[j] * cos[k - j];
                 cos_sum += weighted[j] * sin[k - j];
             }
-            let per_k = T::lit(1.0 / k as f64);
+            let per_k = T::RECIPROCAL[k];
             sin[k] = sin_sum * per_k;
             cos[k] = -cos_sum * per_k;
         }
@@ -248,7 +244,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
                 sum -= weighted[j] * norm.0[k - j];
             }
             weighted[k] = sum * inverse;
-            theta[k] = weighted[k] * T::lit(1.0 / k as f64);
+            theta[k] = weighted[k] * T::RECIPROCAL[k];
         }
         Self(theta)
     }
@@ -266,7 +262,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
             for j in 1..=k {
                 sum += weighted[j] * slope[k - j];
             }
-            y[k] = sum * T::lit(1.0 / k as f64);
+            y[k] = sum * T::RECIPROCAL[k];
             let mut square = T::zero();
             for j in 0..=k {
                 square += y[j] * y[k - j];

@@ -142,12 +142,8 @@ impl<T: Real, A: Analytic<T>, const M: usize> Analytic<T> for Dual<A, M> {
     }
     #[inline]
     fn sqrt(self) -> Self {
-        self.chain(self.value.sqrt(), self.value.rsqrt() * T::lit(0.5))
-    }
-    #[inline]
-    fn rsqrt(self) -> Self {
-        let value = self.value.rsqrt();
-        self.chain(value, value / self.value * T::lit(-0.5))
+        let value = self.value.sqrt();
+        self.chain(value, value.recip() * T::lit(0.5))
     }
     #[inline]
     fn powf(self, exponent: T) -> Self {

@@ -11,9 +11,32 @@ use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssig
 use num_traits::{One, Zero};
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
+    /// Closes [`Real`](super::Real), and holds the whole numbers that series arithmetic needs: from a table, since an index turned
+    /// into a number at run time would take double precision.
+    pub trait Sealed: Sized {
+        /// 0 to 7.
+        const WHOLE: [Self; 8];
+        /// 1/k for k up to 7; 0 for 0.
+        const RECIPROCAL: [Self; 8];
+        /// k! for k up to 7.
+        const FACTORIAL: [Self; 8];
+        /// 1/k! for k up to 7.
+        const PER_FACTORIAL: [Self; 8];
+    }
+
+    macro_rules! tables {
+        ($real:ty) => {
+            impl Sealed for $real {
+                const WHOLE: [Self; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+                const RECIPROCAL: [Self; 8] = [0.0, 1.0, 0.5, 1.0 / 3.0, 0.25, 0.2, 1.0 / 6.0, 1.0 / 7.0];
+                const FACTORIAL: [Self; 8] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0];
+                const PER_FACTORIAL: [Self; 8] =
+                    [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
+            }
+        };
+    }
+    tables!(f32);
+    tables!(f64);
 }
 
 /// A real number of the law: `f32` or `f64`. Sealed, since bit equality between platforms is promised for these two.

@@ -16,9 +16,6 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 use crate::scalar::Real;
 
-/// k! for every order the law reaches.
-const FACTORIAL: [f64; 7] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0];
-
 /// Taylor coefficients of order 0 to N − 1, N ≤ 7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Series<T, const N: usize>(pub [T; N]);
@@ -37,7 +34,7 @@ impl<T: Real, const N: usize> Series<T, N> {
     pub fn from_derivatives(derivatives: [T; N]) -> Self {
         let mut c = derivatives;
         for k in 2..N {
-            c[k] = derivatives[k] * T::lit(1.0 / FACTORIAL[k]);
+            c[k] = derivatives[k] * T::PER_FACTORIAL[k];
         }
         Self(c)
     }
@@ -45,7 +42,7 @@ impl<T: Real, const N: usize> Series<T, N> {
     /// The k-th derivative, k! cₖ.
     #[inline]
     pub fn derivative(&self, k: usize) -> T {
-        self.0[k] * T::lit(FACTORIAL[k])
+        self.0[k] * T::FACTORIAL[k]
     }
 
     /// The value, c₀.
@@ -69,7 +66,7 @@ impl<T: Real, const N: usize> Series<T, N> {
         const { assert!(M < N) };
         let mut c = [T::zero(); M];
         for k in 0..M {
-            c[k] = self.0[k + 1] * T::lit((k + 1) as f64);
+            c[k] = self.0[k + 1] * T::WHOLE[k + 1];
         }
         Series(c)
     }

@@ -43,7 +43,7 @@ impl<T: Real> Curve<T> for Circle<T> {
         let [x, y, z] = position;
         let distance_squared = x.square() + y.square();
 
-        let per_length = distance_squared.truncate().rsqrt();
+        let length = distance_squared.truncate().sqrt();
         let along = [-y.truncate::<6>(), x.truncate(), Series::constant(T::zero())];
         let [v_x, v_y, _] = velocity(position);
         let [a_x, a_y, _] = along;
@@ -53,8 +53,8 @@ impl<T: Real> Curve<T> for Circle<T> {
             surfaces: [distance_squared - self.radius * self.radius, *z - self.p3],
             gradients: [Vector3::new(x0 + x0, y0 + y0, zero), Vector3::new(zero, zero, one)],
             along,
-            per_length,
-            speed: (a_x * v_x + a_y * v_y) * per_length,
+            length,
+            speed: (a_x * v_x + a_y * v_y) / length,
             reach_margin: one,
         }
     }

@@ -16,8 +16,8 @@ pub struct Located<T> {
     pub gradients: [Vector3<T>; 2],
     /// A vector along ρ in N, of any length, orders 0 to 5.
     pub along: [Series<T, 6>; 3],
-    /// 1/|`along`|, so that ρ is their product; orders 0 to 5.
-    pub per_length: Series<T, 6>,
+    /// |`along`|, orders 0 to 5.
+    pub length: Series<T, 6>,
     /// ρ·v, m/s, orders 0 to 5.
     pub speed: Series<T, 6>,
     /// 1 − (curvature · distance towards the centre of curvature) for curves with a nearest point, whose coordinates end where
@@ -34,15 +34,15 @@ impl<T: Real> Located<T> {
         along: [Series<T, 6>; 3],
         position: &PositionSeries<T>,
     ) -> Self {
-        let per_length = norm_squared(&along).rsqrt();
-        let speed = dot(&along, &velocity(position)) * per_length;
-        Self { surfaces, gradients, along, per_length, speed, reach_margin: T::one() }
+        let length = norm_squared(&along).sqrt();
+        let speed = dot(&along, &velocity(position)) / length;
+        Self { surfaces, gradients, along, length, speed, reach_margin: T::one() }
     }
 
     /// ρ now, in N.
     #[inline]
     pub fn tangent(&self) -> Vector3<T> {
-        now(&self.along) * self.per_length.value()
+        now(&self.along) * (T::one() / self.length.value())
     }
 }
 
@@ -64,8 +64,8 @@ pub trait Curved<T: Real>: Curve<T> {
     #[inline]
     fn curvature_squared(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
         let bend = cross(&located.along, &self.turning(position, located));
-        let per_square = located.per_length.square();
-        norm_squared(&bend) * (per_square.square() * per_square)
+        let square = located.length.square();
+        norm_squared(&bend) / (square.square() * square)
     }
 }
 

@@ -26,14 +26,14 @@ pub(super) fn locate<T: Real>(
 ) -> Located<T> {
     let (zero, one) = (T::zero(), T::one());
     let along = [f2, -f1, times_slope(f2)];
-    let per_length = norm_squared(&along).rsqrt();
+    let length = norm_squared(&along).sqrt();
     let [v1, v2, v3] = velocity(position);
     Located {
         surfaces,
         gradients: [Vector3::new(f1.value(), f2.value(), zero), Vector3::new(-slope, zero, one)],
         along,
-        per_length,
-        speed: (f2 * (v1 + times_slope(v3)) - f1 * v2) * per_length,
+        length,
+        speed: (f2 * (v1 + times_slope(v3)) - f1 * v2) / length,
         reach_margin: one,
     }
 }

@@ -92,11 +92,9 @@ fn solve<T: Real>(
     // Taylor coefficients of c and c′ in s.
     let mut point = *local;
     let mut first = [Vector3::zeros(); N];
-    let mut per_factorial = T::one();
     for j in 1..=N {
-        first[j - 1] = local[j] * per_factorial;
-        per_factorial *= T::lit(1.0 / j as f64);
-        point[j] = local[j] * per_factorial;
+        first[j - 1] = local[j] * T::PER_FACTORIAL[j - 1];
+        point[j] = local[j] * T::PER_FACTORIAL[j];
     }
 
     let per_divisor = T::one() / divisor;
@@ -149,9 +147,8 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
         let [d1, d2, d3] = first;
         let w = [d2 * e.z - d3 * e.y, d3 * e.x - d1 * e.z, d1 * e.y - d2 * e.x];
         let per_w = norm_squared(&w).rsqrt();
-        let length_squared = norm_squared(&first);
-        let per_length = length_squared.rsqrt();
-        let g = length_squared * per_length * per_w;
+        let length = norm_squared(&first).sqrt();
+        let g = length * per_w;
         let [r1, r2, r3] = error;
         let height = r1 * e.x + r2 * e.y + r3 * e.z;
 
@@ -166,13 +163,13 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
         let h2_sigma = (r.dot(&w_1) - r.dot(&w_0) * w_rate) * per_w_0;
 
         let along = first.map(|c| c.truncate());
-        let per_length = per_length.truncate();
+        let length = length.truncate();
         Located {
             surfaces: [height * g, dot(&error, &w) * per_w],
             gradients: [e * g_0 + grad_sigma * h1_sigma, n2 + grad_sigma * h2_sigma],
             along,
-            per_length,
-            speed: dot(&along, &velocity(position)) * per_length,
+            length,
+            speed: dot(&along, &velocity(position)) / length,
             reach_margin: divisor / speed_squared,
         }
     }
@@ -187,12 +184,7 @@ impl<T: Real, const K: usize> Curved<T> for FourierPath<T, K> {
     #[inline]
     fn turning(&self, _: &PositionSeries<T>, _: &Located<T>) -> [Series<T, 6>; 3] {
         let advance: Series<T, 6> = Series(self.advance).truncate();
-        let mut per_factorial = T::one();
-        let mut second = [Vector3::zeros(); 6];
-        for j in 0..6 {
-            second[j] = self.local[j + 2] * per_factorial;
-            per_factorial *= T::lit(1.0 / (j + 1) as f64);
-        }
+        let second: [_; 6] = core::array::from_fn(|j| self.local[j + 2] * T::PER_FACTORIAL[j]);
         let compose = |component: fn(&Vector3<T>) -> T| {
             let last = Series::constant(component(&second[5]));
             second[..5].iter().rev().fold(last, |sum, c| sum * advance + component(c))

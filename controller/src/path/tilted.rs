@@ -104,14 +104,14 @@ impl<T: Real> Curve<T> for Tilted<T> {
         let two = T::lit(2.0);
         let along = self.along(x.truncate(), y.truncate());
         let [u1, u2] = along;
-        let per_length = (u1.square() + u2.square()).rsqrt();
+        let length = (u1.square() + u2.square()).sqrt();
         Located {
             surfaces: [x.square() * per_aa + y.square() * per_bb - T::one(), -project(n, &offset)],
             gradients: [e1 * (two * per_aa * x.value()) + e2 * (two * per_bb * y.value()), -n],
             along: self.in_space(along),
-            per_length,
+            length,
             // ξ˙ and η˙ are the velocity's components in the plane.
-            speed: (u1 * x.differentiate() + u2 * y.differentiate()) * per_length,
+            speed: (u1 * x.differentiate() + u2 * y.differentiate()) / length,
             reach_margin: T::one(),
         }
     }
