@@ -3,9 +3,9 @@
 //! The state is taken as it is, without prediction. `"f32"` and `"f64"` are the controller's source in either scalar; the
 //! state is converted from the paper's coordinates in f64, then rounded. `"witness"` is the law by Lie derivatives.
 
-use controller::envelope::Margins;
 use controller::disturbance::Disturbance;
-use controller::{Gains, Real, State, TrackGains, Vehicle, VehicleParams, follow, track};
+use controller::envelope::Margins;
+use controller::{Gains, Path, Real, State, TrackGains, Vehicle, VehicleParams, follow, track};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -141,7 +141,8 @@ pub fn evaluate(line: &[u8]) -> Result<Answer, Invalid> {
             }
         }
         (LawName::Track, None, Some(reference)) => {
-            let time = request.time.ok_or_else(|| Invalid::new("time", "missing: the law \"track\" depends on it"))?;
+            let time =
+                request.time.ok_or_else(|| Invalid::new("time", "missing: the law \"track\" depends on it"))?;
             let time = within("time", time, -1e9..=1e9)?;
             let reference = parse_reference("reference", reference)?;
             let TrackGainFields { k: (k1, k2, k3, yaw), k_integral } = read("gains", request.gains)?;
@@ -199,11 +200,13 @@ impl Point {
 
     fn follow<T: Real>(&self, path: &PathSpec, gains: &Gains<f64>) -> Result<Answer, Invalid> {
         let mut path = path.build::<T>().map_err(|error| Invalid::out_of_range("path", error))?;
+        let state = self.state();
+        path.engage(&state.position);
         let solution = follow::law(
             &self.vehicle()?,
             &mut path,
             &pilot::cast_gains(gains),
-            &self.state(),
+            &state,
             &self.zeta.map(T::lit),
             &self.integral.map(T::lit),
             &Disturbance::none(),
@@ -212,7 +215,12 @@ impl Point {
         Ok(answer(&solution, &[&xi.h1, &xi.h2, &xi.h3, &xi.h4]))
     }
 
-    fn track<T: Real>(&self, reference: &ReferenceSpec, time: f64, gains: &TrackGains<f64>) -> Result<Answer, Invalid> {
+    fn track<T: Real>(
+        &self,
+        reference: &ReferenceSpec,
+        time: f64,
+        gains: &TrackGains<f64>,
+    ) -> Result<Answer, Invalid> {
         let solution = track::law(
             &self.vehicle()?,
             &pilot::cast_track_gains(gains),
@@ -239,7 +247,12 @@ impl Point {
         self.witnessed(evaluation, path.determinant([p1, p2, p3]))
     }
 
-    fn track_witness(&self, reference: &ReferenceSpec, time: f64, gains: &TrackGains<f64>) -> Result<Answer, Invalid> {
+    fn track_witness(
+        &self,
+        reference: &ReferenceSpec,
+        time: f64,
+        gains: &TrackGains<f64>,
+    ) -> Result<Answer, Invalid> {
         let vehicle = self.plant_vehicle();
         let at = Operating { vehicle: &vehicle, x: &self.x, zeta: &self.zeta };
         let [k1, k2, k3] = gains.position;
@@ -306,11 +319,10 @@ fn finite(answer: Answer) -> Result<Answer, Invalid> {
         ("margins.path_det", path_det),
     ];
     let lists = [("torque", answer.torque.as_slice()), ("xi", &answer.xi), ("nu", &answer.nu)];
-    let bad = scalars
-        .iter()
-        .find(|(_, value)| !value.is_finite())
-        .map(|(name, _)| name)
-        .or_else(|| lists.iter().find(|(_, list)| !list.iter().all(|value| value.is_finite())).map(|(name, _)| name));
+    let bad =
+        scalars.iter().find(|(_, value)| !value.is_finite()).map(|(name, _)| name).or_else(|| {
+            lists.iter().find(|(_, list)| !list.iter().all(|value| value.is_finite())).map(|(name, _)| name)
+        });
     match bad {
         None => Ok(answer),
         Some(name) => Err(Invalid::new(

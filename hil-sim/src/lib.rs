@@ -1,9 +1,11 @@
 //! Simulator of a slung load and its path-following law: plant, scenarios, flights, reports, and an independent witness.
 
 pub mod batch;
+pub mod check;
 pub mod course;
 pub mod deviation;
 pub mod eval;
+pub mod fit;
 pub mod formula;
 pub mod input;
 pub mod integrate;
@@ -14,6 +16,7 @@ pub mod pilot;
 pub mod plant;
 pub mod reference;
 pub mod report;
+pub mod route;
 pub mod run;
 pub mod scenario;
 pub mod witness;

@@ -93,6 +93,16 @@ impl Lap {
             .fold(&self.nodes[0], |best, node| if node.curvature() > best.curvature() { node } else { best })
     }
 
+    /// The point at an arc length, modulo the curve's.
+    #[must_use]
+    pub fn at(&self, arc: f64) -> Place {
+        let arc = arc.rem_euclid(self.length());
+        let after = self.nodes.partition_point(|node| node.arc <= arc).clamp(1, self.nodes.len() - 1);
+        let (from, to) = (&self.nodes[after - 1], &self.nodes[after]);
+        let segment = Segment::between(from, to);
+        Place { position: segment.point((arc - from.arc) / segment.length), arc }
+    }
+
     /// The curve's nearest point, over the whole of it.
     #[must_use]
     pub fn nearest(&self, position: Vector3<f64>) -> Nearest {
@@ -173,11 +183,16 @@ impl Segment {
         Self { arc: from.arc, length, coefficients: [p, u, join * 3.0 - u * 2.0 - v, u + v - join * 2.0] }
     }
 
+    fn point(&self, t: f64) -> Vector3<f64> {
+        let [c0, c1, c2, c3] = self.coefficients;
+        c0 + (c1 + (c2 + c3 * t) * t) * t
+    }
+
     /// Newton's method for the foot of the perpendicular, kept within the segment.
     fn nearest(&self, position: Vector3<f64>) -> Nearest {
-        let [c0, c1, c2, c3] = self.coefficients;
+        let [_, c1, c2, c3] = self.coefficients;
         let mut t = 0.5_f64;
-        let at = |t: f64| (c0 + (c1 + (c2 + c3 * t) * t) * t, c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t);
+        let at = |t: f64| (self.point(t), c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t);
         // The segment bends by 0.02 rad at most: three steps reach rounding from its middle.
         for _ in 0..4 {
             let (point, slope) = at(t);

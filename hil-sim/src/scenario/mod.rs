@@ -128,7 +128,7 @@ impl Law {
     #[must_use]
     pub fn circle(&self) -> Option<[f64; 3]> {
         match self {
-            Self::Follow { path: PathSpec::Circle { radius, p3, speed }, .. } => Some([*radius, *p3, *speed]),
+            Self::Follow { path, .. } => path.circle(),
             // (sin, cos) turns from n2 to n1.
             Self::Track { reference: ReferenceSpec { radius, p3, rate }, .. } => Some([*radius, *p3, -rate * radius]),
         }
