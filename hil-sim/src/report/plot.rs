@@ -55,8 +55,12 @@ fn widened(range: &Range<f64>, width: f64) -> Range<f64> {
 /// The payload's ways in space, n3 down, with the curve to be flown in grey.
 pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
     let all = || curve.iter().chain(tracks.iter().flat_map(|track| &track.points));
-    let axes: [Range<f64>; 3] = std::array::from_fn(|axis| range(all().map(|p| p[axis]), 1.0));
+    let mut axes: [Range<f64>; 3] = std::array::from_fn(|axis| range(all().map(|p| p[axis]), 1.0));
     let level = (axes[0].end - axes[0].start).max(axes[1].end - axes[1].start);
+    // A level flight is shown as such: heights are not stretched beyond twice the level scale.
+    if axes[2].end - axes[2].start < 0.5 * level {
+        axes[2] = widened(&axes[2], 0.5 * level);
+    }
     let [p1, p2] = [widened(&axes[0], level), widened(&axes[1], level)];
     // The chart's own vertical points up: it is −p3.
     let up = -axes[2].end..-axes[2].start;
@@ -87,7 +91,7 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
     let names = [
         ("p1, m", (middle(&p1), up.start, p2.end + 1.6 * beyond)),
         ("p2, m", (p1.end + 1.6 * beyond, up.start, middle(&p2))),
-        ("p3, m", (p1.start, up.end, p2.end + 0.6 * beyond)),
+        ("p3, m", (p1.start - 0.6 * beyond, up.end + 0.07 * (up.end - up.start), p2.end)),
     ];
     chart.draw_series(names.map(|(name, place)| Text::new(name, place, (FONT, 13).into_font())))?;
     chart.draw_series(LineSeries::new(curve.iter().map(at), GREY.stroke_width(1)))?;
@@ -127,6 +131,8 @@ pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) 
         .configure_mesh()
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
+        .x_label_formatter(&|p| p.to_string())
+        .y_label_formatter(&|p| p.to_string())
         .x_desc("p2, m")
         .y_desc("p1, m")
         .label_style((FONT, 13))
@@ -144,7 +150,7 @@ pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) 
     }
     Ok(chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(SeriesLabelPosition::MiddleMiddle)
         .label_font((FONT, 13))
         .background_style(WHITE.mix(0.8))
         .draw()?)
@@ -152,7 +158,9 @@ pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) 
 
 /// Curves over time on a linear scale.
 pub fn time(area: &Area<'_>, quantity: &str, curves: &[Curve], marks_s: &[f64]) -> Drawn {
-    let y = range(curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)), 1e-6);
+    let mut y = range(curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.1)), 1e-6);
+    // Room for the legend.
+    y.end += 0.25 * (y.end - y.start);
     let mut builder = time_axes(area);
     let mut chart = builder.build_cartesian_2d(time_range(curves), y.clone())?;
     chart
@@ -160,6 +168,7 @@ pub fn time(area: &Area<'_>, quantity: &str, curves: &[Curve], marks_s: &[f64]) 
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc("t, s")
+        .x_label_formatter(&|t| t.to_string())
         .y_desc(quantity)
         .y_labels(6)
         .label_style((FONT, 13))
@@ -193,6 +202,7 @@ pub fn time_log(area: &Area<'_>, quantity: &str, floor: f64, curves: &[Curve], m
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc("t, s")
+        .x_label_formatter(&|t| t.to_string())
         .y_desc(quantity)
         .y_label_formatter(&|value| format!("{value:.0e}"))
         .label_style((FONT, 13))

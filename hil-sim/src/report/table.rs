@@ -84,5 +84,6 @@ fn name(outcome: &Outcome) -> String {
         End::Complete => name.clone(),
         End::Interrupted => format!("{name}\ninterrupted"),
         End::NotFinite(at_s) => format!("{name}\nlost at {at_s:.3} s"),
+        End::Unanswered(at_s) => format!("{name}\nunanswered from {at_s:.3} s"),
     }
 }
