@@ -7,6 +7,15 @@ use crate::course::{ReferenceSpec, Route};
 use crate::plant::Input;
 use crate::scenario::{ControllerSpec, Law};
 
+/// Whatever answers states with commands: a law in this program, or a target at the other end of a link.
+pub trait Answers {
+    /// Starts from a stated ζ, with integrals at zero.
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]);
+
+    /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there will be no more.
+    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision>;
+}
+
 /// A controller at work in the scalar `T`.
 pub enum Pilot<T> {
     /// Path following.
@@ -124,6 +133,17 @@ impl<T: Real> Pilot<T> {
             nu: nu.map(T::to_f64),
             margins: margins_f64(&margins),
         }
+    }
+}
+
+impl<T: Real> Answers for Pilot<T> {
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        Self::start(self, state, zeta);
+    }
+
+    #[inline]
+    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
+        Some(Self::step(self, state, t_s))
     }
 }
 

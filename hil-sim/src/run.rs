@@ -4,14 +4,14 @@
 //! twin, the same source in another scalar with its own ζ and integrals, is asked at the same states; what it answers
 //! moves nothing.
 
-use controller::{Real, SetupError, State};
+use controller::{SetupError, State};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::deviation::{Deviation, Deviations};
 use crate::integrate::rk4;
 use crate::metrics::{Metrics, Results};
-use crate::pilot::{Decision, Pilot};
+use crate::pilot::{Answers, Decision, Pilot};
 use crate::plant::{Input, derivative, index};
 use crate::scenario::Scenario;
 
@@ -59,6 +59,8 @@ pub enum End {
     Interrupted,
     /// State or command stopped being finite at this time, s.
     NotFinite(f64),
+    /// The controller stopped answering at this time, s.
+    Unanswered(f64),
 }
 
 /// How to fly.
@@ -85,11 +87,24 @@ pub fn fly(scenario: &Scenario, options: Options<'_>) -> Result<Flight, SetupErr
     let twin = if options.twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
     Ok(match options.arithmetic {
         Arithmetic::F32 => {
-            let pilot = Pilot::<f32>::new(&scenario.controller).map_err(widen)?;
-            fly_with(scenario, pilot, twin, options)
+            let mut pilot = Pilot::<f32>::new(&scenario.controller).map_err(widen)?;
+            fly_with(scenario, &mut pilot, twin, options)
         }
-        Arithmetic::F64 => fly_with(scenario, Pilot::<f64>::new(&scenario.controller)?, twin, options),
+        Arithmetic::F64 => fly_with(scenario, &mut Pilot::<f64>::new(&scenario.controller)?, twin, options),
     })
+}
+
+/// Flies `scenario` on a controller that is not made here, as a target at the other end of a link; `options.arithmetic` has no say.
+///
+/// # Errors
+/// [`SetupError`] if the twin cannot be made.
+pub fn fly_on(
+    scenario: &Scenario,
+    controller: &mut impl Answers,
+    options: Options<'_>,
+) -> Result<Flight, SetupError<f64>> {
+    let twin = if options.twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
+    Ok(fly_with(scenario, controller, twin, options))
 }
 
 /// Flies `scenario` with the f32 pilot, alone and to the end.
@@ -101,9 +116,9 @@ pub fn fly_simply(scenario: &Scenario, arithmetic: Arithmetic) -> Result<Flight,
     fly(scenario, Options { arithmetic, twin: false, stop: &stop, progress: &|_| {} })
 }
 
-fn fly_with<T: Real>(
+fn fly_with<A: Answers>(
     scenario: &Scenario,
-    mut pilot: Pilot<T>,
+    pilot: &mut A,
     mut twin: Option<Pilot<f64>>,
     options: Options<'_>,
 ) -> Flight {
@@ -150,7 +165,10 @@ fn fly_with<T: Real>(
                     twin.start(&state, zeta);
                 }
             }
-            let decision = pilot.step(&state, t_s);
+            let Some(decision) = pilot.step(&state, t_s) else {
+                end = End::Unanswered(t_s);
+                break;
+            };
             sample.decision = Some(decision);
             if let Some(twin) = &mut twin {
                 deviations.push(&decision, &twin.step(&state, t_s));
