@@ -1,0 +1,220 @@
+//! The program as its users meet it: commands, files, messages, exit statuses.
+
+use std::fs;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// A folder of this test's own, empty.
+fn folder(test: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(test);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+fn program() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).expect("text")
+}
+
+fn evaluate(lines: &str) -> Output {
+    let mut child = program()
+        .arg("eval")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(lines.as_bytes()).expect("it reads");
+    child.wait_with_output().expect("it ends")
+}
+
+/// A flight of half a second.
+const SHORT: &str = r#"
+duration_s = 0.5
+path = { kind = "circle", radius = 5.0, p3 = -10.0, speed = -5.0 }
+[controller]
+law = "follow"
+"#;
+
+const POINT: &str = r#"{"law":"follow","arithmetic":"f32","vehicle":{"payload_mass":0.5,"uav_mass":2.5,"inertia":[0.03,0.03,0.05],"rod_length":2.0,"gravity":9.81},"path":{"kind":"circle","radius":5.0,"p3":-10.0,"speed":1.0},"x":[0,9,-10,0,0,0,0,0,0,0,0,0,0,0,0,0],"zeta":[0,0,0,0],"gains":{"k":[[64,192,240,160,60,12],[64,192,240,160,60,12],[1,5,10,10,5],[1,2]]}}"#;
+
+/// Runs a scenario of this text, which is to be refused, and returns the message.
+fn refused(test: &str, scenario: &str) -> String {
+    let folder = folder(test);
+    let file = folder.join("flight.toml");
+    fs::write(&file, scenario).expect("a file");
+    let output = program().arg("run").arg(&file).arg("--out").arg(folder.join("out")).output().expect("it starts");
+    assert!(!output.status.success(), "{test} was accepted");
+    assert!(!folder.join("out").exists(), "{test} left a report");
+    text(&output.stderr)
+}
+
+#[test]
+fn help_has_examples_for_each_command() {
+    for command in [&[][..], &["run"], &["figures"], &["eval"]] {
+        let output = program().args(command).arg("--help").output().expect("it starts");
+        assert!(output.status.success());
+        assert!(text(&output.stdout).contains("Examples:"), "{command:?}");
+    }
+}
+
+#[test]
+fn unknown_commands_and_options_are_refused() {
+    for arguments in [&["fly"][..], &["run"], &["--speed", "3"]] {
+        let output = program().args(arguments).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+}
+
+#[test]
+fn a_run_leaves_log_figure_page_and_summary() {
+    let folder = folder("run");
+    fs::write(folder.join("short.toml"), SHORT).expect("a file");
+    let out = folder.join("out");
+    let output =
+        program().arg("run").arg(folder.join("short.toml")).arg("--out").arg(&out).output().expect("it starts");
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).contains("short"));
+    assert_eq!(text(&output.stderr), "", "no progress bar where standard error is no terminal");
+
+    let names: Vec<String> =
+        fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    for name in ["short.csv", "short.svg", "report.html", "summary.json"] {
+        assert!(names.iter().any(|other| other == name), "{name} in {names:?}");
+    }
+    assert!(!names.iter().any(|name| name.ends_with(".partial")), "{names:?}");
+
+    let log = fs::read_to_string(out.join("short.csv")).unwrap();
+    // A line every 10 ms, the last and the heading; all as long as the heading.
+    assert_eq!(log.lines().count(), 52);
+    let fields = |line: &str| line.split(',').count();
+    assert!(log.lines().all(|line| fields(line) == fields(log.lines().next().unwrap())));
+
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    let run = &summary["runs"][0];
+    assert_eq!((run["scenario"].as_str(), run["law"].as_str()), (Some("short"), Some("follow")));
+    for key in ["effort_n_s", "peak_u", "min_thrust_n", "peak_torque_nm", "f32_f64_max_relative", "times_real_time"] {
+        assert!(run[key].is_f64(), "{key} in {run}");
+    }
+    assert!(run.get("settle_s").is_none(), "4 m away after half a second: {run}");
+
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("<svg ") && !page.contains("src=") && !page.contains("href="), "the page is not self-contained");
+}
+
+#[test]
+fn quiet_is_silent() {
+    let folder = folder("quiet");
+    let arguments = ["run", "fig3a", "--quiet", "--out"];
+    let output = program().args(arguments).arg(folder.join("out")).output().expect("it starts");
+    assert!(output.status.success());
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+}
+
+#[test]
+fn scenario_errors_name_file_line_and_field() {
+    let cases: [(&str, String, usize, &str); 13] = [
+        ("unknown-key", SHORT.replace("duration_s", "duration"), 2, "duration"),
+        ("unknown-controller-key", format!("{SHORT}speed = 3\n"), 6, "controller.speed"),
+        ("unknown-path-key", SHORT.replace("radius", "radios"), 3, "path.radios"),
+        ("missing", SHORT.replace("duration_s = 0.5", ""), 1, "duration_s"),
+        ("radius", SHORT.replace("5.0, p3", "-5.0, p3"), 3, "path.radius"),
+        ("duration", SHORT.replace("0.5", "-1"), 2, "duration_s"),
+        ("no-number", SHORT.replace("0.5", "nan"), 2, "duration_s"),
+        ("rate", format!("{SHORT}rate_hz = 1e6\n"), 6, "controller.rate_hz"),
+        ("told-mass", format!("{SHORT}vehicle = {{ payload_mass = 0.0 }}\n"), 6, "controller.vehicle.payload_mass"),
+        ("pole", format!("{SHORT}poles = [[-1], [-1], [-1], [-1]]\n"), 6, "controller.poles[0]"),
+        ("type", format!("{SHORT}rate_hz = \"fast\"\n"), 6, "controller.rate_hz"),
+        ("kind", SHORT.replace("\"circle\"", "\"square\""), 3, "path.kind"),
+        ("reference", SHORT.replace("path =", "reference ="), 3, "reference"),
+    ];
+    for (test, scenario, line, field) in cases {
+        let message = refused(test, &scenario);
+        assert!(message.contains(&format!("flight.toml:{line}: ")), "{test}: {message}");
+        assert!(message.contains(field), "{test}: {message}");
+    }
+}
+
+#[test]
+fn values_out_of_range_are_refused_with_value_and_range() {
+    let message = refused("range", &SHORT.replace("0.5", "-1"));
+    assert!(message.contains("-1 is outside 0.01 to 100000"), "{message}");
+}
+
+#[test]
+fn an_integral_gain_that_is_too_large_is_refused_with_its_limit() {
+    // K̃ of Figs 5 and 6 with the poles of Fig. 3: stable below 42.2.
+    let message = refused("integral", &format!("{SHORT}k_integral = [120.0, 100.0, 40.0]\n"));
+    assert!(message.contains("controller.k_integral[0]") && message.contains("42.2"), "{message}");
+}
+
+#[test]
+fn text_that_is_no_toml_is_refused_with_its_line() {
+    let message = refused("toml", "duration_s = 1\npath = = 2\n");
+    assert!(message.contains("flight.toml:2: "), "{message}");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let output = program().args(["run", "nowhere.toml"]).output().expect("it starts");
+    assert!(!output.status.success());
+    assert!(text(&output.stderr).contains("nowhere.toml"));
+}
+
+#[test]
+fn eval_answers_in_order_and_fails_at_the_end_if_a_line_was_bad() {
+    let bad = POINT.replace("\"radius\":5.0", "\"radius\":-5.0");
+    let output = evaluate(&format!("{POINT}\n{bad}\nnot json\n{POINT}"));
+    assert_eq!(output.status.code(), Some(1));
+    let stdout = text(&output.stdout);
+    let lines: Vec<serde_json::Value> =
+        stdout.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
+    assert_eq!(lines.len(), 4);
+    assert_eq!(lines[0], lines[3]);
+    assert!(lines[1]["error"].as_str().is_some_and(|error| error.contains("path.radius")), "{}", lines[1]);
+    assert!(lines[2]["error"].is_string());
+    assert!((lines[0]["thrust"].as_f64().unwrap() - 29.43).abs() < 1e-4);
+    assert_eq!(lines[0]["xi"].as_array().map(Vec::len), Some(19));
+}
+
+#[test]
+fn eval_of_good_lines_succeeds() {
+    let output = evaluate(&format!("{POINT}\n\n{POINT}\n"));
+    assert!(output.status.success());
+    assert_eq!(text(&output.stdout).lines().count(), 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_complete_files_of_the_flights_that_were_done() {
+    use std::time::{Duration, Instant};
+    let folder = folder("interrupt");
+    // More flight than a test would wait for.
+    let endless = SHORT.replace("duration_s = 0.5", "duration_s = 50000.0\nlog_period_s = 10.0");
+    fs::write(folder.join("endless.toml"), endless).expect("a file");
+    let out = folder.join("out");
+    let mut child = program()
+        .arg("run")
+        .arg(folder.join("endless.toml"))
+        .arg("--out")
+        .arg(&out)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    std::thread::sleep(Duration::from_millis(500));
+    let asked = Instant::now();
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
+    assert!(kill.success());
+    let status = child.wait().expect("it ends");
+    assert!(asked.elapsed() < Duration::from_secs(5), "it took {:?} to stop", asked.elapsed());
+    assert_eq!(status.code(), Some(130));
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["runs"].as_array().map(Vec::len), Some(0));
+    assert!(out.join("report.html").exists());
+}
