@@ -58,9 +58,9 @@ pub(crate) struct Actuators<T> {
     decay: T,
     /// Share of the newest command in the mean over the law's look ahead.
     share: T,
-    /// What acts now: before and after the command that takes effect at this sample.
-    before: Command<T>,
-    after: Command<T>,
+    /// What acts up to this sample, and by how much that stepped at the last one.
+    applied: Command<T>,
+    step: Command<T>,
 }
 
 impl<T: Real> Actuators<T> {
@@ -78,36 +78,35 @@ impl<T: Real> Actuators<T> {
         let share =
             if delay > 0 || has_lag { (acting - settled + latency * T::lit(0.5)) / horizon } else { T::zero() };
         let share = if horizon > T::zero() { share } else { T::zero() };
-        let mut actuators =
-            Self { line: [command; MAX_DELAY + 1], newest: 0, delay, decay, share, before: command, after: command };
-        actuators.reset(command);
-        Ok(actuators)
+        let line = [command; MAX_DELAY + 1];
+        Ok(Self { line, newest: 0, delay, decay, share, applied: command, step: Command::zero() })
     }
 
     /// `command` has been on for long.
     pub(crate) fn reset(&mut self, command: Command<T>) {
         self.line = [command; MAX_DELAY + 1];
-        self.before = command;
-        self.after = command;
+        self.applied = command;
+        self.step = Command::zero();
     }
 
-    /// What acted up to this sample.
+    /// What acts up to this sample.
     #[inline]
-    pub(crate) fn before(&self) -> &Command<T> {
-        &self.before
+    pub(crate) fn applied(&self) -> &Command<T> {
+        &self.applied
     }
 
-    /// What acts from this sample on; known once the coming command has been [pushed](Self::push).
+    /// By how much that stepped at the last sample: nothing where there is a lag.
     #[inline]
-    pub(crate) fn after(&self) -> &Command<T> {
-        &self.after
+    pub(crate) fn step(&self) -> &Command<T> {
+        &self.step
     }
 
-    /// The mean over the law's look ahead, as far as it is known before the coming command.
+    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is known before the coming command;
+    /// `None` without latency and lag.
     #[inline]
-    pub(crate) fn mean(&self) -> Command<T> {
-        let newest = self.line.get(self.newest).unwrap_or(&self.before);
-        blend(&self.before, newest, self.share)
+    pub(crate) fn drift(&self) -> Option<Command<T>> {
+        let newest = self.line.get(self.newest).filter(|_| self.share > T::zero())?;
+        Some(newest.minus(&self.applied).times(self.share))
     }
 
     /// Sends the command for the coming hold.
@@ -119,21 +118,12 @@ impl<T: Real> Actuators<T> {
         }
         let acting = (self.newest + MAX_DELAY + 1 - self.delay) % (MAX_DELAY + 1);
         let delayed = self.line.get(acting).copied().unwrap_or(command);
+        let step = delayed.minus(&self.applied);
         if self.decay > T::zero() {
-            self.after = self.before;
-            self.before = blend(&delayed, &self.after, self.decay);
+            self.applied = delayed.minus(&step.times(self.decay));
         } else {
-            self.after = delayed;
-            self.before = delayed;
+            self.step = step;
+            self.applied = delayed;
         }
-    }
-}
-
-/// `from` + (`to` − `from`) · `share`.
-#[inline]
-fn blend<T: Real>(from: &Command<T>, to: &Command<T>, share: T) -> Command<T> {
-    Command {
-        thrust: from.thrust + (to.thrust - from.thrust) * share,
-        torque: from.torque + (to.torque - from.torque) * share,
     }
 }

@@ -19,6 +19,23 @@ pub struct Command<T> {
     pub torque: Vector3<T>,
 }
 
+impl<T: Real> Command<T> {
+    /// No thrust, no torque.
+    pub fn zero() -> Self {
+        Self { thrust: T::zero(), torque: Vector3::zeros() }
+    }
+
+    #[inline]
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        Self { thrust: self.thrust - other.thrust, torque: self.torque - other.torque }
+    }
+
+    #[inline]
+    pub(crate) fn times(&self, factor: T) -> Self {
+        Self { thrust: self.thrust * factor, torque: self.torque * factor }
+    }
+}
+
 /// The integrator chain (7) over `dt` with u_ζ held: exact.
 #[inline]
 pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {

@@ -65,11 +65,11 @@ pub struct ObserverParams<T> {
     pub rod_bandwidth: T,
     /// Of τ̂_d, rad/s.
     pub torque_bandwidth: T,
-    /// Bound of each component of d̂, m/s².
+    /// Bound of |d̂|, m/s².
     pub payload_bound: T,
-    /// Bound of each component of δ̂, 1/s².
+    /// Bound of |δ̂|, 1/s².
     pub rod_bound: T,
-    /// Bound of each component of τ̂_d, N·m.
+    /// Bound of |τ̂_d|, N·m.
     pub torque_bound: T,
 }
 
@@ -108,8 +108,8 @@ struct Channel<T> {
     velocity_gain: T,
     /// (1 − p)²/h, times the inertia where the disturbance is a torque.
     disturbance_gain: Vector3<T>,
-    bound: T,
-    /// The velocity predicted up to the middle of the running period's trapezoid.
+    bound_squared: T,
+    /// The velocity predicted up to the left end of the running period's trapezoid.
     predicted: Vector3<T>,
 }
 
@@ -120,32 +120,29 @@ impl<T: Real> Channel<T> {
         Self {
             velocity_gain: gap * (T::one() + pole),
             disturbance_gain: inertia * (gap * gap / period),
-            bound,
+            bound_squared: bound * bound,
             predicted: Vector3::zeros(),
         }
     }
 
-    /// Ends the period that began at the last [`predict`](Self::predict): corrects velocity and `disturbance` by what
-    /// was measured.
+    /// Ends the running period with the acceleration at its `right` end, corrects velocity and `disturbance` by what was measured, and begins
+    /// the next with the acceleration at its `left` end. A disturbance that would leave its bound stays where it is.
     #[inline]
     fn correct(
         &mut self,
         measured: &Vector3<T>,
-        acceleration: &Vector3<T>,
+        right: &Vector3<T>,
+        left: &Vector3<T>,
         half_period: T,
         disturbance: &mut Vector3<T>,
     ) {
-        let predicted = self.predicted + acceleration * half_period;
+        let predicted = self.predicted + right * half_period;
         let innovation = measured - predicted;
+        self.predicted = predicted + innovation * self.velocity_gain + left * half_period;
         let found = *disturbance + innovation.component_mul(&self.disturbance_gain);
-        *disturbance = found.map(|x| x.clamp(-self.bound, self.bound));
-        self.predicted = predicted + innovation * self.velocity_gain;
-    }
-
-    /// Begins the next period.
-    #[inline]
-    fn predict(&mut self, acceleration: &Vector3<T>, half_period: T) {
-        self.predicted += acceleration * half_period;
+        if found.dot(&found) <= self.bound_squared {
+            *disturbance = found;
+        }
     }
 }
 
@@ -172,13 +169,12 @@ impl<T: Real> Observer<T> {
         })
     }
 
-    /// Forgets every estimate; the velocities are those of `state`, and its period begins with `acceleration`.
+    /// Forgets every estimate. `state` is to be sampled now, after a period of `acceleration`.
     pub(crate) fn reset(&mut self, state: &State<T>, acceleration: &Acceleration<T>) {
         self.estimate = Disturbance::none();
-        self.payload.predicted = state.velocity;
-        self.rod.predicted = state.rod_rate;
-        self.body.predicted = state.body_rate;
-        self.predict(acceleration);
+        self.payload.predicted = state.velocity - acceleration.payload * self.half_period;
+        self.rod.predicted = state.rod_rate - acceleration.rod * self.half_period;
+        self.body.predicted = state.body_rate - acceleration.body * self.half_period;
     }
 
     /// What has been found up to now.
@@ -186,22 +182,18 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Ends a period with the measured `state` and the model's `acceleration` there, under what was applied until now.
+    /// Corrects the estimates by the sampled `state`: `right` are the model's accelerations that end the last period, `left` those that
+    /// begin the next.
+    ///
+    /// Thrust and torque step between periods, and the model is affine in them: the step at the last sample, which `left` of then could
+    /// not know, is made good by `right`.
     #[inline]
-    pub(crate) fn correct(&mut self, state: &State<T>, acceleration: &Acceleration<T>) {
+    pub(crate) fn correct(&mut self, state: &State<T>, right: &Acceleration<T>, left: &Acceleration<T>) {
         let half_period = self.half_period;
         let Disturbance { payload, rod, torque } = &mut self.estimate;
-        self.payload.correct(&state.velocity, &acceleration.payload, half_period, payload);
-        self.rod.correct(&state.rod_rate, &acceleration.rod, half_period, rod);
-        self.body.correct(&state.body_rate, &acceleration.body, half_period, torque);
+        self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period, payload);
+        self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period, rod);
+        self.body.correct(&state.body_rate, &right.body, &left.body, half_period, torque);
         *rod -= state.rod * state.rod.dot(rod);
-    }
-
-    /// Begins a period with the model's `acceleration` under what is applied from now on.
-    #[inline]
-    pub(crate) fn predict(&mut self, acceleration: &Acceleration<T>) {
-        self.payload.predict(&acceleration.payload, self.half_period);
-        self.rod.predict(&acceleration.rod, self.half_period);
-        self.body.predict(&acceleration.body, self.half_period);
     }
 }

@@ -253,7 +253,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
         let vehicle = self.sampler.vehicle();
         let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
         let mut solution = law(vehicle, &mut path, &self.gains, &state, &zeta, &self.integral, &disturbance);
-        solution.command = self.sampler.hold(sampled, &solution.command, solution.u_zeta, &solution.margins);
+        solution.command = self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins);
         let period = self.sampler.period();
         self.approach.advance(period);
         let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;

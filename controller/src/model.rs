@@ -20,6 +20,13 @@ pub struct Acceleration<T> {
     pub body: Vector3<T>,
 }
 
+impl<T: Real> Acceleration<T> {
+    #[inline]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self { payload: self.payload + other.payload, rod: self.rod + other.rod, body: self.body + other.body }
+    }
+}
+
 /// The model at one state, ready for any command.
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a, T> {
@@ -69,6 +76,20 @@ impl<'a, T: Real> Model<'a, T> {
                 + q * (vehicle.coupling * lambda)
                 + disturbance.rod,
             body: torque.component_mul(&vehicle.inverse_inertia),
+        }
+    }
+
+    /// What `difference` more of a command adds to the accelerations, which are affine in it.
+    #[inline]
+    pub fn response(&self, difference: &Command<T>) -> Acceleration<T> {
+        let vehicle = self.vehicle;
+        let q = &self.state.rod;
+        let kappa = difference.thrust * vehicle.kappa_per_thrust;
+        let coupled = -(kappa * self.b3_rod);
+        Acceleration {
+            payload: q * (coupled * vehicle.inverse_coupling),
+            rod: self.b3 * kappa + q * coupled,
+            body: difference.torque.component_mul(&vehicle.inverse_inertia),
         }
     }
 

@@ -144,10 +144,15 @@ impl<T: Real> Sampler<T> {
     #[inline]
     pub(crate) fn ahead(&mut self, sampled: &State<T>) -> Ahead<T> {
         let model = Model::at(&self.vehicle, sampled);
-        let until_now = model.acceleration(self.actuators.before(), self.observer.estimate());
-        self.observer.correct(sampled, &until_now);
+        let acceleration = model.acceleration(self.actuators.applied(), self.observer.estimate());
+        let right = acceleration.plus(&model.response(self.actuators.step()));
+        self.observer.correct(sampled, &right, &acceleration);
+        let mean = match self.actuators.drift() {
+            Some(drift) => acceleration.plus(&model.response(&drift)),
+            None => acceleration,
+        };
+        let state = model.ahead(&mean, self.horizon);
         let disturbance = *self.observer.estimate();
-        let state = model.ahead(&model.acceleration(&self.actuators.mean(), &disturbance), self.horizon);
         Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold), disturbance }
     }
 
@@ -156,20 +161,12 @@ impl<T: Real> Sampler<T> {
     /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference, so that the compensator stands for the motion
     /// that the applied thrust gives.
     #[inline]
-    pub(crate) fn hold(
-        &mut self,
-        sampled: &State<T>,
-        command: &Command<T>,
-        u_zeta: T,
-        margins: &Margins<T>,
-    ) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.actuators.before().torque - command.torque);
+    pub(crate) fn hold(&mut self, command: &Command<T>, u_zeta: T, margins: &Margins<T>) -> Command<T> {
+        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().torque - command.torque);
         self.bump = Some(bump * self.fade);
         let smooth = Command { thrust: command.thrust, torque: command.torque + bump };
         let applied = self.limits.limit(&smooth);
         self.actuators.push(applied);
-        let model = Model::at(&self.vehicle, sampled);
-        self.observer.predict(&model.acceleration(self.actuators.after(), self.observer.estimate()));
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
         let missing = command.thrust - applied.thrust;
         self.zeta[0] += missing * margins.q3 * margins.q_b3 * self.vehicle.per_total_mass;

@@ -177,7 +177,7 @@ impl<T: Real> Tracker<T> {
         let reference = reference.shift(self.sampler.horizon());
         let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
         let mut solution = law(self.sampler.vehicle(), &self.gains, &reference, &state, &zeta, &disturbance);
-        solution.command = self.sampler.hold(sampled, &solution.command, solution.u_zeta, &solution.margins);
+        solution.command = self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins);
         solution
     }
 
