@@ -135,13 +135,33 @@ impl Lap {
                 if squared(j) > squared(j - 1) || squared(j) > squared(j + 1) {
                     continue;
                 }
-                let found = self.nearest_on(j % count, here.position());
-                if closest.is_none_or(|closest| found.distance < closest.distance) {
-                    closest = Some(Approach { distance: found.distance, here: here.place(), there: found.place });
+                let there = self.nearest_on(j % count, here.position());
+                // Both feet can be nearer than this node's by as much as its neighbours are away.
+                let slack = self.nodes[i + 1].arc - here.arc;
+                if closest.is_none_or(|closest| there.distance < closest.distance + slack) {
+                    let found = self.squarely(i, j % count, there);
+                    if closest.is_none_or(|closest| found.distance < closest.distance) {
+                        closest = Some(found);
+                    }
                 }
             }
         }
         closest
+    }
+
+    /// The join of two branches, near the nodes `i` and `j`, that is normal to both: each foot in turn is the nearest point to the
+    /// other. Where branches cross at an angle γ the distance falls by cos γ each time.
+    fn squarely(&self, i: usize, j: usize, there: Nearest) -> Approach {
+        let (mut here, mut there) = (self.nearest_on(i, there.place.position), there);
+        for _ in 0..100 {
+            there = self.nearest_on(j, here.place.position);
+            let distance = here.distance;
+            here = self.nearest_on(i, there.place.position);
+            if here.distance > (1.0 - 1e-6) * distance {
+                break;
+            }
+        }
+        Approach { distance: here.distance, here: here.place, there: there.place }
     }
 
     /// [`closest_branches`](Self::closest_branches), refused if they meet.

@@ -152,7 +152,7 @@ pub struct Report {
 /// Range of the search for the highest speed, m/s.
 pub const SPEED_LIMIT: f64 = 100.0;
 /// Its lower end, m/s.
-pub const SLOWEST: f64 = 0.01;
+pub const SLOWEST: f64 = 0.05;
 
 /// Walks `path` from the point found near `hint` (N, m) and says what a lap asks of `vehicle`.
 ///
@@ -244,9 +244,9 @@ fn fastest<P: Path<f64> + ?Sized>(
         return None;
     }
     let (mut good, mut bad) = (SLOWEST, None);
-    // Up in steps of a tenth, so that no band of bad speeds wider than that is jumped, then halving.
+    // Up in steps of a fifth, so that no band of bad speeds wider than that is jumped, then halving.
     while bad.is_none() && good < SPEED_LIMIT {
-        let next = (1.1 * good).min(SPEED_LIMIT);
+        let next = (1.2 * good).min(SPEED_LIMIT);
         match exceeds(next) {
             Some(excess) => bad = Some((next, excess)),
             None => good = next,

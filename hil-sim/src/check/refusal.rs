@@ -39,6 +39,11 @@ pub enum Reason {
         /// Angle between the tangents on both sides, rad.
         turn: f64,
     },
+    /// The tangent is continuous, a higher derivative by arc length is not.
+    Jump {
+        /// Its order: 2 for the curvature.
+        order: usize,
+    },
     /// ∇h1 × ∇h2 = 0: the curve crosses itself, or the surfaces touch without cutting.
     Irregular,
     /// It comes back to a point it has passed, `other` m along.
@@ -71,6 +76,8 @@ impl fmt::Display for Reason {
             Self::Endless => f.write_str("the curve does not close within the longest walk"),
             Self::Kink { turn } if *turn > 3.0 => f.write_str("the curve crosses itself or turns back on itself"),
             Self::Kink { turn } => write!(f, "a kink of {:.2} degrees", turn.to_degrees()),
+            Self::Jump { order: 2 } => f.write_str("the curvature jumps"),
+            Self::Jump { order } => write!(f, "the curve's derivative of order {order} jumps"),
             Self::Irregular => f.write_str("∇h1 × ∇h2 = 0: the curve crosses itself, or its surfaces only touch"),
             Self::Crossing { other } => write!(f, "the curve crosses itself: the same point lies {other:.3} m along"),
             Self::Stops => f.write_str("the prescribed speed is zero"),

@@ -1,7 +1,7 @@
 //! Walking a curve once round: by its tangent forwards, by Newton's method back onto it, in steps that follow its bends.
 
 use super::lap::{Lap, Node};
-use super::probe::{Frame, length, unit_speed};
+use super::probe::{Frame, Motion, length, unit_speed};
 use super::refusal::{Place, Reason, Refusal};
 use controller::{Path, Vector3};
 
@@ -18,6 +18,10 @@ const SMALLEST: f64 = 1e-7;
 const STEPS: usize = 200_000;
 /// Furthest a closed curve may be from the origin, m: the range of the controller's own curves.
 const FURTHEST: f64 = 1e5;
+/// Orders whose jumps are looked for: for these the polynomial of order six predicts to third order in the step, or better.
+const CHECKED_ORDERS: [usize; 3] = [2, 3, 4];
+/// A jump of this part of the derivative's largest value on the lap is one.
+const JUMP: f64 = 0.01;
 /// |∇h1 × ∇h2| below this part of its largest value on the lap is zero up to rounding.
 const IRREGULAR: f64 = 1e-6;
 
@@ -45,6 +49,7 @@ pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Re
             arc += arc_of(last, angle(&frame.tangent, &start.tangent));
             nodes.push(Node { arc, ..nodes[0] });
             regular(path, &nodes)?;
+            smooth(path, &nodes)?;
             return Ok(Lap::new(nodes));
         }
 
@@ -125,6 +130,49 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
         }
     }
     Ok(())
+}
+
+/// Looks for jumps of the curve's second to fourth derivatives, where its pieces are smooth but do not fit.
+///
+/// From each node its Taylor polynomial says what the next node's derivatives are. Where it errs, the stretch between is halved,
+/// towards the larger error: on a smooth curve that error falls, at a jump it stays.
+fn smooth<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
+    let scales = CHECKED_ORDERS
+        .map(|order| nodes.iter().map(|node| length(&node.motion[order])).fold(f64::MIN_POSITIVE, f64::max));
+    let errors = |from: &Node, to: &Node| {
+        let predicted = shifted(&from.motion, to.arc - from.arc);
+        let error = |i: usize| length(&(predicted[CHECKED_ORDERS[i]] - to.motion[CHECKED_ORDERS[i]])) / scales[i];
+        [error(0), error(1), error(2)]
+    };
+    let largest = |from: &Node, to: &Node| errors(from, to).into_iter().fold(0.0, f64::max);
+    for [from, to] in nodes.array_windows() {
+        let (mut from, mut to) = (*from, *to);
+        let least = 1e-6 * (to.arc - from.arc);
+        while largest(&from, &to) > JUMP {
+            if to.arc - from.arc < least {
+                // The lowest order: those above it jump as well.
+                let order = CHECKED_ORDERS.into_iter().zip(errors(&from, &to)).find(|(_, error)| *error > JUMP);
+                return Err(Reason::Jump { order: order.map_or(2, |(order, _)| order) }.at(from.place()));
+            }
+            let half = 0.5 * (to.arc - from.arc);
+            let ahead = from.position() + from.tangent() * half;
+            let Some(frame) = Frame::on_curve(path, ahead, half) else { break };
+            let middle = node(path, &frame, from.arc + half)?;
+            if largest(&from, &middle) > largest(&middle, &to) { to = middle } else { from = middle }
+        }
+    }
+    Ok(())
+}
+
+/// A Taylor polynomial about a point `ahead`: Horner's synthetic division.
+fn shifted(motion: &Motion, ahead: f64) -> Motion {
+    let mut shifted = *motion;
+    for first in 0..shifted.len() {
+        for k in (first..shifted.len() - 1).rev() {
+            shifted[k] = shifted[k] + shifted[k + 1] * ahead;
+        }
+    }
+    shifted
 }
 
 /// Length of an arc from its chord and turn: chord·(θ/2)/sin(θ/2), to fourth order in θ.
