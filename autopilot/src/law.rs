@@ -1,23 +1,22 @@
 //! The law that the parameters describe.
 
-use controller::path::{ConstantSpeed, FixedYaw, Profiled};
 use controller::{
-    Circle, Command, Follower, Gains, Margins, Reference, Sampling, SetupError, State, TrackGains, Tracker, Vehicle,
+    Command, Follower, Gains, Margins, Reference, Sampling, SetupError, State, TrackGains, Tracker, Vehicle,
     VehicleParams,
 };
 
 use crate::parameters::{Parameter, Parameters};
+use crate::path::{AnyPath, path};
 
 /// Why a law could not be made of the parameters.
 pub type SetupRefused = SetupError<f32>;
 
-type CirclePath = Profiled<Circle<f32>, ConstantSpeed<f32>, FixedYaw<f32>>;
-
 /// A law with everything it needs.
 #[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)]
 pub enum Law {
-    /// Path following on the circle.
-    Circle(Follower<f32, CirclePath>),
+    /// Path following.
+    Follow(Follower<f32, AnyPath>),
     /// Trajectory tracking of a circle.
     Track {
         /// The law.
@@ -59,13 +58,13 @@ impl Law {
         let sampling = Sampling {
             period: get(Parameter::Period),
             latency: get(Parameter::Latency),
+            rotor_lag: get(Parameter::RotorLag),
             look_ahead: get(Parameter::LookAhead) > 0.5,
         };
-        let (radius, p3) = (get(Parameter::PathRadius), get(Parameter::PathP3));
         if get(Parameter::Law) > 0.5 {
             let position = [Parameter::K1D0, Parameter::K2D0, Parameter::K3D0].map(|first| parameters.run(first));
             let gains = TrackGains { position, yaw: parameters.run(Parameter::K4D0) };
-            let circle = [radius, p3, get(Parameter::ReferenceRate)];
+            let circle = [get(Parameter::PathRadius), get(Parameter::PathP3), get(Parameter::ReferenceRate)];
             return Ok(Self::Track { tracker: Tracker::new(vehicle, gains, sampling)?, circle });
         }
         let gains = Gains {
@@ -75,14 +74,13 @@ impl Law {
             k4: parameters.run(Parameter::K4D0),
             integral: parameters.run(Parameter::KI1),
         };
-        let path = Circle::new(radius, p3)?.at_speed(get(Parameter::PathSpeed));
-        Ok(Self::Circle(Follower::new(vehicle, path, gains, sampling)?))
+        Ok(Self::Follow(Follower::new(vehicle, path(parameters)?, gains, sampling)?))
     }
 
     /// Starts from a stated ζ, with the integrals at zero.
     pub fn start(&mut self, state: &State<f32>, zeta: [f32; 4]) {
         match self {
-            Self::Circle(follower) => follower.start(state, zeta),
+            Self::Follow(follower) => follower.start(state, zeta),
             Self::Track { tracker, .. } => tracker.start(state, zeta),
         }
     }
@@ -90,7 +88,7 @@ impl Law {
     /// Takes over from `applied` without a bump in thrust.
     pub fn engage(&mut self, state: &State<f32>, applied: Command<f32>) {
         match self {
-            Self::Circle(follower) => follower.engage(state, applied),
+            Self::Follow(follower) => follower.engage(state, applied),
             Self::Track { tracker, .. } => tracker.engage(state, applied),
         }
     }
@@ -105,7 +103,7 @@ impl Law {
             }
         };
         match self {
-            Self::Circle(follower) => {
+            Self::Follow(follower) => {
                 let solution = follower.step(state);
                 fill([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
                 let controller::Solution { command, u_zeta, nu, margins, .. } = solution;
@@ -125,7 +123,7 @@ impl Law {
     #[must_use]
     pub fn zeta(&self) -> [f32; 4] {
         match self {
-            Self::Circle(follower) => *follower.zeta(),
+            Self::Follow(follower) => *follower.zeta(),
             Self::Track { tracker, .. } => *tracker.zeta(),
         }
     }
@@ -134,7 +132,7 @@ impl Law {
     #[must_use]
     pub fn integral(&self) -> [f32; 3] {
         match self {
-            Self::Circle(follower) => *follower.integral(),
+            Self::Follow(follower) => *follower.integral(),
             Self::Track { .. } => [0.0; 3],
         }
     }
@@ -143,7 +141,7 @@ impl Law {
     #[must_use]
     pub fn hover_thrust(&self) -> f32 {
         match self {
-            Self::Circle(follower) => follower.vehicle().hover_thrust(),
+            Self::Follow(follower) => follower.vehicle().hover_thrust(),
             Self::Track { tracker, .. } => tracker.vehicle().hover_thrust(),
         }
     }

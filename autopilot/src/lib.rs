@@ -14,10 +14,12 @@ mod control;
 mod law;
 mod mixer;
 mod parameters;
+mod path;
 mod server;
 
 pub use control::{Answer, Autopilot, Boot, Counters, Drive};
 pub use law::{Law, SetupRefused, Step};
 pub use mixer::Mixer;
 pub use parameters::{Entry, Parameter, Parameters, Refused};
+pub use path::{AnyPath, HARMONICS};
 pub use server::{Next, Server};

@@ -50,7 +50,9 @@ parameters! {
     /// Control period, s.
     Period "CTL_PERIOD" = 0.002, 5e-4, 0.2;
     /// Known time from the state's sample to its command's start, s.
-    Latency "CTL_LATENCY" = 0.0, 0.0, 0.2;
+    Latency "CTL_LATENCY" = 0.0, 0.0, 0.5;
+    /// Known time constant of the rotors, s.
+    RotorLag "CTL_LAG" = 0.0, 0.0, 0.5;
     /// 1: evaluate the law for the middle of the coming hold; 0: at the sample.
     LookAhead "CTL_AHEAD" = 1.0, 0.0, 1.0;
     /// The law: 0 path following, 1 trajectory tracking.
@@ -71,14 +73,148 @@ parameters! {
     /// Gravity, m/s².
     Gravity "VEH_G" = 9.81, 0.1, 30.0;
 
-    /// The curve: 0 circle.
-    PathKind "PATH_KIND" = 0.0, 0.0, 0.0;
+    /// The curve: 0 circle, 1 ellipse, 2 bent, 3 superellipse, 4 tilted, 5 Fourier, each as in the controller.
+    PathKind "PATH_KIND" = 0.0, 0.0, 5.0;
     /// Speed along the curve, m/s; negative flies it the other way.
     PathSpeed "PATH_SPEED" = 1.0, -50.0, 50.0;
+    /// Largest centripetal acceleration, m/s²: slower where the curve bends. 0: the same speed everywhere.
+    PathAcceleration "PATH_ACC" = 0.0, 0.0, 100.0;
+    /// Yaw along the path: 0 fixed, 1 along the tangent, 2 towards a vertical line.
+    PathYawKind "PATH_YAW_KIND" = 0.0, 0.0, 2.0;
+    /// Fixed yaw, rad.
+    PathYaw "PATH_YAW" = 0.0, -10.0, 10.0;
+    /// p1 of the line that the nose points to, m.
+    PathYawX "PATH_YAW_X" = 0.0, -1e5, 1e5;
+    /// Its p2, m.
+    PathYawY "PATH_YAW_Y" = 0.0, -1e5, 1e5;
     /// Circle, of the path or of the tracking law's reference: radius, m.
     PathRadius "PATH_RADIUS" = 5.0, 0.01, 1e5;
     /// Circle: p3, m (negative is above the origin).
     PathP3 "PATH_P3" = -10.0, -1e5, 1e5;
+    /// Ellipse, bent, superellipse, tilted: half axis a, m.
+    PathA "PATH_A" = 5.0, 0.01, 1e5;
+    /// Half axis b, m.
+    PathB "PATH_B" = 4.0, 0.01, 1e5;
+    /// Ellipse, bent, superellipse: height c0, m.
+    PathC0 "PATH_C0" = -10.0, -1e5, 1e5;
+    /// Ellipse, superellipse: slope c1.
+    PathC1 "PATH_C1" = 0.0, -100.0, 100.0;
+    /// Superellipse: half its exponent.
+    PathHalfExponent "PATH_EXP2" = 2.0, 1.0, 255.0;
+    /// Tilted, Fourier: centre, n1, m.
+    PathCenter1 "PATH_CTR_1" = 0.0, -1e5, 1e5;
+    /// n2.
+    PathCenter2 "PATH_CTR_2" = 0.0, -1e5, 1e5;
+    /// n3.
+    PathCenter3 "PATH_CTR_3" = -10.0, -1e5, 1e5;
+    /// Tilted: the normal; Fourier: the direction that its normals are counted from; of any length. n1.
+    PathNormal1 "PATH_NRM_1" = 0.0, -1e5, 1e5;
+    /// n2.
+    PathNormal2 "PATH_NRM_2" = 0.0, -1e5, 1e5;
+    /// n3.
+    PathNormal3 "PATH_NRM_3" = 1.0, -1e5, 1e5;
+    /// Tilted: direction of the half axis a, of any length. n1.
+    PathMajor1 "PATH_MAJ_1" = 1.0, -1e5, 1e5;
+    /// n2.
+    PathMajor2 "PATH_MAJ_2" = 0.0, -1e5, 1e5;
+    /// n3.
+    PathMajor3 "PATH_MAJ_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 1 along n1, m.
+    Cos11 "FOU_C1_1" = 5.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 1 along n2, m.
+    Cos12 "FOU_C1_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 1 along n3, m.
+    Cos13 "FOU_C1_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 2 along n1, m.
+    Cos21 "FOU_C2_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 2 along n2, m.
+    Cos22 "FOU_C2_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 2 along n3, m.
+    Cos23 "FOU_C2_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 3 along n1, m.
+    Cos31 "FOU_C3_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 3 along n2, m.
+    Cos32 "FOU_C3_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 3 along n3, m.
+    Cos33 "FOU_C3_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 4 along n1, m.
+    Cos41 "FOU_C4_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 4 along n2, m.
+    Cos42 "FOU_C4_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 4 along n3, m.
+    Cos43 "FOU_C4_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 5 along n1, m.
+    Cos51 "FOU_C5_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 5 along n2, m.
+    Cos52 "FOU_C5_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 5 along n3, m.
+    Cos53 "FOU_C5_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 6 along n1, m.
+    Cos61 "FOU_C6_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 6 along n2, m.
+    Cos62 "FOU_C6_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 6 along n3, m.
+    Cos63 "FOU_C6_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 7 along n1, m.
+    Cos71 "FOU_C7_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 7 along n2, m.
+    Cos72 "FOU_C7_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 7 along n3, m.
+    Cos73 "FOU_C7_3" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 8 along n1, m.
+    Cos81 "FOU_C8_1" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 8 along n2, m.
+    Cos82 "FOU_C8_2" = 0.0, -1e5, 1e5;
+    /// Fourier: cosine of harmonic 8 along n3, m.
+    Cos83 "FOU_C8_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 1 along n1, m.
+    Sin11 "FOU_S1_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 1 along n2, m.
+    Sin12 "FOU_S1_2" = 5.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 1 along n3, m.
+    Sin13 "FOU_S1_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 2 along n1, m.
+    Sin21 "FOU_S2_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 2 along n2, m.
+    Sin22 "FOU_S2_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 2 along n3, m.
+    Sin23 "FOU_S2_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 3 along n1, m.
+    Sin31 "FOU_S3_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 3 along n2, m.
+    Sin32 "FOU_S3_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 3 along n3, m.
+    Sin33 "FOU_S3_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 4 along n1, m.
+    Sin41 "FOU_S4_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 4 along n2, m.
+    Sin42 "FOU_S4_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 4 along n3, m.
+    Sin43 "FOU_S4_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 5 along n1, m.
+    Sin51 "FOU_S5_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 5 along n2, m.
+    Sin52 "FOU_S5_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 5 along n3, m.
+    Sin53 "FOU_S5_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 6 along n1, m.
+    Sin61 "FOU_S6_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 6 along n2, m.
+    Sin62 "FOU_S6_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 6 along n3, m.
+    Sin63 "FOU_S6_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 7 along n1, m.
+    Sin71 "FOU_S7_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 7 along n2, m.
+    Sin72 "FOU_S7_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 7 along n3, m.
+    Sin73 "FOU_S7_3" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 8 along n1, m.
+    Sin81 "FOU_S8_1" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 8 along n2, m.
+    Sin82 "FOU_S8_2" = 0.0, -1e5, 1e5;
+    /// Fourier: sine of harmonic 8 along n3, m.
+    Sin83 "FOU_S8_3" = 0.0, -1e5, 1e5;
     /// Tracking law's circle: angular rate, rad/s.
     ReferenceRate "REF_RATE" = 1.0, -50.0, 50.0;
 
