@@ -127,7 +127,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         y[0] = inverse;
         for k in 1..N {
             let mut sum = T::zero();
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += self.0[j] * y[k - j];
             }
             y[k] = -sum * inverse;
@@ -164,7 +164,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         y[0] = self.0[0].powf(exponent);
         for k in 1..N {
             let mut sum = T::zero();
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += (exponent * weighted[j] - self.0[j] * T::WHOLE[k - j]) * y[k - j];
             }
             y[k] = sum * inverse * T::RECIPROCAL[k];
@@ -180,7 +180,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         y[0] = self.0[0].exp();
         for k in 1..N {
             let mut sum = T::zero();
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += weighted[j] * y[k - j];
             }
             y[k] = sum * T::RECIPROCAL[k];
@@ -215,7 +215,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         (sin[0], cos[0]) = self.0[0].sin_cos();
         for k in 1..N {
             let (mut sin_sum, mut cos_sum) = (T::zero(), T::zero());
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sin_sum += weighted[j] * cos[k - j];
                 cos_sum += weighted[j] * sin[k - j];
             }
@@ -237,7 +237,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         theta[0] = self.0[0].atan2(x.0[0]);
         for k in 1..N {
             let mut sum = T::zero();
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += x.0[k - j] * dy[j] - self.0[k - j] * dx[j];
             }
             for j in 1..k {
@@ -259,12 +259,12 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         slope[0] = T::one() - y[0] * y[0];
         for k in 1..N {
             let mut sum = T::zero();
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += weighted[j] * slope[k - j];
             }
             y[k] = sum * T::RECIPROCAL[k];
             let mut square = T::zero();
-            for j in 0..=k {
+            for j in 0..k + 1 {
                 square += y[j] * y[k - j];
             }
             slope[k] = -square;

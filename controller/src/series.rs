@@ -128,7 +128,7 @@ impl<T: Real, const N: usize> Mul for Series<T, N> {
         let mut c = [T::zero(); N];
         for k in 0..N {
             let mut sum = self.0[0] * other.0[k];
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum += self.0[j] * other.0[k - j];
             }
             c[k] = sum;
@@ -146,7 +146,7 @@ impl<T: Real, const N: usize> Div for Series<T, N> {
         let mut c = [T::zero(); N];
         for k in 0..N {
             let mut sum = self.0[k];
-            for j in 1..=k {
+            for j in 1..k + 1 {
                 sum -= other.0[j] * c[k - j];
             }
             c[k] = sum * inverse;

@@ -3,6 +3,8 @@
 // As in series.rs: indices run over compile-time orders.
 #![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
 
+use core::array::from_fn;
+
 use nalgebra::Vector3;
 
 use crate::analytic::Analytic;
@@ -36,8 +38,8 @@ pub struct FourierPath<T, const K: usize> {
     sigma: T,
     /// c about it, by its derivatives in σ.
     local: [Vector3<T>; N + 1],
-    /// σ(t) − σ(0).
-    advance: [T; N],
+    /// (σ(t) − σ(0))/t, orders 0 to 5.
+    advance: [T; N - 1],
 }
 
 impl<T: Real, const K: usize> FourierPath<T, K> {
@@ -50,7 +52,7 @@ impl<T: Real, const K: usize> FourierPath<T, K> {
             reference: reference * (T::one() / reference.dot(&reference).sqrt()),
             sigma: T::zero(),
             local: [Vector3::zeros(); N + 1],
-            advance: [T::zero(); N],
+            advance: [T::zero(); N - 1],
         })
     }
 
@@ -71,11 +73,11 @@ impl<T: Real, const K: usize> FourierPath<T, K> {
     }
 }
 
-/// r = p − c(σ), c′(σ) and σ − σ(0) along the payload's motion.
+/// r = p − c(σ), c′(σ) and (σ − σ(0))/t along the payload's motion.
 struct Nearest<T> {
     error: [Series<T, N>; 3],
     first: [Series<T, N>; 3],
-    advance: [T; N],
+    advance: [T; N - 1],
 }
 
 /// Solves r·c′ = 0 order by order, given c's derivatives about the nearest point and `divisor` |c′|² − r·c″ there.
@@ -90,15 +92,13 @@ fn solve<T: Real>(
     divisor: T,
 ) -> Nearest<T> {
     // Taylor coefficients of c and c′ in s.
-    let mut point = *local;
-    let mut first = [Vector3::zeros(); N];
-    for j in 1..=N {
-        first[j - 1] = local[j] * T::PER_FACTORIAL[j - 1];
-        point[j] = local[j] * T::PER_FACTORIAL[j];
-    }
+    let point: [_; N] = from_fn(|j| local[j] * T::PER_FACTORIAL[j]);
+    let first: [_; N] = from_fn(|j| local[j + 1] * T::PER_FACTORIAL[j]);
 
     let per_divisor = T::one() / divisor;
-    let mut powers = [[T::zero(); N]; N];
+    // s/t, and the same of s², …, s⁶: entry n of row j is coefficient j + n of sʲ, and the ones before it vanish.
+    let mut advance = [T::zero(); N - 1];
+    let mut powers = [[T::zero(); N - 1]; N - 2];
     let mut r = [Vector3::zeros(); N];
     let mut d = [Vector3::zeros(); N];
     r[0] = offset - point[0];
@@ -106,27 +106,26 @@ fn solve<T: Real>(
     let [x, y, z] = position;
     for m in 1..N {
         r[m] = Vector3::new(x.0[m], y.0[m], z.0[m]);
-        for j in 2..=m {
-            // [sʲ]_m from s and sʲ⁻¹, whose series begin at orders 1 and j − 1.
-            let mut power = T::zero();
-            for i in 1..=m - j + 1 {
-                power += powers[1][i] * powers[j - 1][m - i];
+        let mut lower = &advance;
+        let coefficients = point.iter().zip(&first).skip(2).take(m - 1);
+        for ((j, (c, c_1)), row) in (2..).zip(coefficients).zip(&mut powers) {
+            let reversed = lower.iter().take(m + 1 - j).rev();
+            let power = advance.iter().zip(reversed).fold(T::zero(), |sum, (&a, &b)| sum + a * b);
+            if let Some(entry) = row.get_mut(m - j) {
+                *entry = power;
             }
-            powers[j][m] = power;
-            r[m] -= point[j] * power;
-            d[m] += first[j] * power;
+            r[m] -= c * power;
+            d[m] += c_1 * power;
+            lower = row;
         }
-        let mut product = T::zero();
-        for i in 0..=m {
-            product += r[i].dot(&d[m - i]);
-        }
-        let advance = product * per_divisor;
-        powers[1][m] = advance;
-        r[m] -= point[1] * advance;
-        d[m] += first[1] * advance;
+        let product = r.iter().zip(d.iter().take(m + 1).rev()).fold(T::zero(), |sum, (r, d)| sum + r.dot(d));
+        let newest = product * per_divisor;
+        advance[m - 1] = newest;
+        r[m] -= point[1] * newest;
+        d[m] += first[1] * newest;
     }
     let transposed = |v: &[Vector3<T>; N]| [Series(v.map(|v| v.x)), Series(v.map(|v| v.y)), Series(v.map(|v| v.z))];
-    Nearest { error: transposed(&r), first: transposed(&d), advance: powers[1] }
+    Nearest { error: transposed(&r), first: transposed(&d), advance }
 }
 
 impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
@@ -183,8 +182,9 @@ impl<T: Real, const K: usize> Curved<T> for FourierPath<T, K> {
     /// c″(σ(t)): its Taylor polynomial in s, by Horner's rule.
     #[inline]
     fn turning(&self, _: &PositionSeries<T>, _: &Located<T>) -> [Series<T, 6>; 3] {
-        let advance: Series<T, 6> = Series(self.advance).truncate();
-        let second: [_; 6] = core::array::from_fn(|j| self.local[j + 2] * T::PER_FACTORIAL[j]);
+        let [a1, a2, a3, a4, a5, _] = self.advance;
+        let advance = Series([T::zero(), a1, a2, a3, a4, a5]);
+        let second: [_; 6] = from_fn(|j| self.local[j + 2] * T::PER_FACTORIAL[j]);
         let compose = |component: fn(&Vector3<T>) -> T| {
             let last = Series::constant(component(&second[5]));
             second[..5].iter().rev().fold(last, |sum, c| sum * advance + component(c))
