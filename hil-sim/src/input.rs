@@ -7,9 +7,9 @@ use std::ops::RangeInclusive;
 
 /// A field that cannot be used, and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{field}: {message}")]
+#[error("{field}{}{message}", if field.is_empty() { "" } else { ": " })]
 pub struct Invalid {
-    /// Path to the field, as in `controller.poles[0][2]`.
+    /// Path to the field, as in `controller.poles[0][2]`; empty for the whole.
     pub field: String,
     /// What is wrong with it.
     pub message: String,
@@ -18,7 +18,7 @@ pub struct Invalid {
 impl Invalid {
     /// An error of one field.
     pub fn new(field: impl Into<String>, message: impl Display) -> Self {
-        Self { field: field.into(), message: message.to_string() }
+        Self { field: field.into(), message: message.to_string().trim_end().to_owned() }
     }
 
     /// A parameter that the controller refused, inside the table `at`.

@@ -104,7 +104,10 @@ fn a_run_leaves_log_figure_page_and_summary() {
     assert!(run.get("settle_s").is_none(), "4 m away after half a second: {run}");
 
     let page = fs::read_to_string(out.join("report.html")).unwrap();
-    assert!(page.contains("<svg ") && !page.contains("src=") && !page.contains("href="), "the page is not self-contained");
+    assert!(
+        page.contains("<svg ") && !page.contains("src=") && !page.contains("href="),
+        "the page is not self-contained"
+    );
 }
 
 #[test]
@@ -217,4 +220,13 @@ fn an_interrupt_leaves_complete_files_of_the_flights_that_were_done() {
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["runs"].as_array().map(Vec::len), Some(0));
     assert!(out.join("report.html").exists());
+}
+
+#[test]
+fn the_examples_of_eval_can_be_evaluated() {
+    let help = text(&program().args(["eval", "--help"]).output().expect("it starts").stdout);
+    let lines: Vec<&str> = help.split('\'').filter(|part| part.starts_with("{\"law\"")).collect();
+    assert_eq!(lines.len(), 2);
+    let output = evaluate(&lines.join("\n"));
+    assert!(output.status.success(), "{}", text(&output.stdout));
 }

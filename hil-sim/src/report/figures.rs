@@ -68,7 +68,13 @@ fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
             ways,
             of("3"),
         ),
-        figure(4, "The flights of Fig. 3 over time: distance from the circle, thrust and torque.", (1000, 860), inputs, of("3")),
+        figure(
+            4,
+            "The flights of Fig. 3 over time: distance from the circle, thrust and torque.",
+            (1000, 860),
+            inputs,
+            of("3"),
+        ),
         figure(
             5,
             "The law is told 0.25 kg, the payload has 0.5 kg: without integral action the payload flies a larger circle, \

@@ -65,10 +65,11 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
     // The chart's own vertical points up: it is −p3.
     let up = -axes[2].end..-axes[2].start;
 
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, (FONT, 17))
-        .margin(8)
-        .build_cartesian_3d(p1.clone(), up.clone(), p2.clone())?;
+    let mut chart = ChartBuilder::on(area).caption(title, (FONT, 17)).margin(8).build_cartesian_3d(
+        p1.clone(),
+        up.clone(),
+        p2.clone(),
+    )?;
     chart.with_projection(|mut projection| {
         projection.pitch = 0.35;
         projection.yaw = 0.6;

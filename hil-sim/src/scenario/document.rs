@@ -31,7 +31,9 @@ impl<'a> Document<'a> {
         for step in field.split(['.', '[']).filter(|step| !step.is_empty()) {
             let next = match (table, value, step.trim_end_matches(']').parse::<usize>()) {
                 (Some(table), ..) => table.get_key_value(step).map(|(key, value)| (key.span().start, value)),
-                (None, Some(DeValue::Array(items)), Ok(index)) => items.get(index).map(|item| (item.span().start, item)),
+                (None, Some(DeValue::Array(items)), Ok(index)) => {
+                    items.get(index).map(|item| (item.span().start, item))
+                }
                 _ => None,
             };
             let Some((at, found)) = next else { break };

@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::gains::{self, GainFields, PoleField};
 use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
+use crate::check::Limits;
 use crate::course::{parse_path, parse_reference};
 use crate::input::{Invalid, all_within, read, within};
 use crate::plant::VehicleParameters;
@@ -22,6 +23,7 @@ struct ScenarioFields {
     reference: Option<toml::Value>,
     initial: Option<toml::Value>,
     obstacle: Option<ObstacleFields>,
+    limits: Option<toml::Value>,
     duration_s: f64,
     #[serde(default = "four")]
     substeps: u32,
@@ -42,8 +44,7 @@ struct ControllerFields {
     k: Option<Vec<Vec<f64>>>,
     #[serde(default)]
     k_integral: [f64; 3],
-    #[serde(default)]
-    zeta: [f64; 4],
+    zeta: Option<[f64; 4]>,
     #[serde(default)]
     vehicle: VehicleFields,
 }
@@ -125,14 +126,18 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
     let duration_s = within("duration_s", fields.duration_s, 0.01..=DURATION_LIMIT)?;
     let rate_hz = within("controller.rate_hz", fields.controller.rate_hz, 5.0..=10_000.0)?;
     let law = law(&fields.controller, fields.path, fields.reference)?;
-    let initial = match fields.initial {
-        None => initial("initial", InitialFields::default())?,
-        Some(toml::Value::String(word)) if word == "steady" => match law.circle() {
-            Some([radius, p3, speed]) => steady::on_circle(&vehicle, radius, p3, speed),
-            None => return Err(Invalid::new("initial", "\"steady\" is known for horizontal circles only")),
-        },
-        Some(toml::Value::Table(table)) => initial("initial", read("initial", table)?)?,
+    let params = vehicle_params(&vehicle);
+    let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
+    let (initial, zeta) = match fields.initial {
+        None => (initial("initial", &InitialFields::default())?, [0.0; 4]),
+        Some(toml::Value::String(word)) if word == "steady" => steady(&law, &vehicle, &flown)?,
+        Some(toml::Value::Table(table)) => (initial("initial", &read("initial", table)?)?, [0.0; 4]),
         Some(_) => return Err(Invalid::new("initial", "neither \"steady\" nor a table of coordinates")),
+    };
+    let zeta = fields.controller.zeta.unwrap_or(zeta);
+    let limits = match fields.limits {
+        Some(value) => Limits::read("limits", value, &flown)?,
+        None => Limits::of(&flown),
     };
     let obstacle = fields
         .obstacle
@@ -151,20 +156,15 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
         figure: fields.figure,
         controller: ControllerSpec {
             law,
-            vehicle: VehicleParams {
-                payload_mass: told.payload_mass,
-                uav_mass: told.uav_mass,
-                rod_length: told.rod_length,
-                inertia: told.inertia,
-                gravity: told.gravity,
-            },
+            vehicle: vehicle_params(&told),
             rate_hz,
             look_ahead: fields.controller.look_ahead,
-            zeta: all_within("controller.zeta", fields.controller.zeta, 1e4)?,
+            zeta: all_within("controller.zeta", zeta, 1e4)?,
         },
         vehicle,
         initial,
         obstacle,
+        limits,
         duration_s,
         substeps: within("substeps", fields.substeps, 1..=1000)?,
         log_period_s: within("log_period_s", fields.log_period_s, 1e-4..=duration_s)?,
@@ -172,24 +172,43 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
     })
 }
 
+fn vehicle_params(vehicle: &VehicleParameters) -> VehicleParams<f64> {
+    let VehicleParameters { payload_mass, uav_mass, rod_length, inertia, gravity } = *vehicle;
+    VehicleParams { payload_mass, uav_mass, rod_length, inertia, gravity }
+}
+
+/// State and ζ of the motion on the course itself.
+fn steady(
+    law: &Law,
+    vehicle: &VehicleParameters,
+    flown: &controller::Vehicle<f64>,
+) -> Result<([f64; 16], [f64; 4]), Invalid> {
+    if let Some([radius, p3, speed]) = law.circle() {
+        return Ok((steady::on_circle(vehicle, radius, p3, speed), [0.0; 4]));
+    }
+    match law {
+        Law::Follow { path, .. } => {
+            let steady = path.steady(flown).map_err(|refusal| Invalid::new("initial", refusal))?;
+            Ok((steady.state.to_paper(), steady.zeta))
+        }
+        Law::Track { .. } => Err(Invalid::new("initial", "\"steady\" is known for paths and circles only")),
+    }
+}
+
 fn law(
     controller: &ControllerFields,
     path: Option<toml::Value>,
     reference: Option<toml::Value>,
 ) -> Result<Law, Invalid> {
-    let gains = GainFields {
-        poles: controller.poles.clone(),
-        k: controller.k.clone(),
-        integral: controller.k_integral,
-    };
+    let gains =
+        GainFields { poles: controller.poles.clone(), k: controller.k.clone(), integral: controller.k_integral };
     match (controller.law, path, reference) {
         (LawName::Follow, Some(path), None) => {
             Ok(Law::Follow { path: parse_path("path", path)?, gains: gains::follow(gains)? })
         }
-        (LawName::Track, None, Some(reference)) => Ok(Law::Track {
-            reference: parse_reference("reference", reference)?,
-            gains: gains::track(gains)?,
-        }),
+        (LawName::Track, None, Some(reference)) => {
+            Ok(Law::Track { reference: parse_reference("reference", reference)?, gains: gains::track(gains)? })
+        }
         (LawName::Follow, _, Some(_)) => Err(Invalid::new("reference", "the law \"follow\" takes a path")),
         (LawName::Track, Some(_), _) => Err(Invalid::new("path", "the law \"track\" takes a reference")),
         (LawName::Follow, None, None) => Err(Invalid::new("path", "missing: the law \"follow\" takes a path")),
@@ -216,7 +235,7 @@ impl VehicleFields {
 }
 
 /// The paper's 16 coordinates. The chart of (1) ends at cos β = 0 and cos φ = 0.
-fn initial(at: &str, fields: InitialFields) -> Result<[f64; 16], Invalid> {
+fn initial(at: &str, fields: &InitialFields) -> Result<[f64; 16], Invalid> {
     let field = |name: &str| format!("{at}.{name}");
     let angle = |name: &str, value, limit: f64| within(&field(name), value, -limit..=limit);
     let turn = std::f64::consts::PI;

@@ -43,8 +43,7 @@ pub(super) fn track(fields: GainFields) -> Result<TrackGains<f64>, Invalid> {
         return Err(Invalid::new("controller.k_integral", "the tracking law has no integral action"));
     }
     let rows = Rows::of(fields.poles, fields.k, TRACK_POLES)?;
-    let gains =
-        TrackGains { position: [rows.gains(0)?, rows.gains(1)?, rows.gains(2)?], yaw: rows.gains(3)? };
+    let gains = TrackGains { position: [rows.gains(0)?, rows.gains(1)?, rows.gains(2)?], yaw: rows.gains(3)? };
     gains.check().map_err(|error| rows.locate(error))?;
     Ok(gains)
 }
@@ -65,9 +64,9 @@ impl Rows {
             (Some(_), Some(_)) => {
                 return Err(Invalid::new("controller.k", "the gains follow from poles: give either poles or k"));
             }
-            (Some(poles), None) => Self::Poles(
-                poles.iter().map(|row| row.iter().map(|&pole| Pole::from(pole)).collect()).collect(),
-            ),
+            (Some(poles), None) => {
+                Self::Poles(poles.iter().map(|row| row.iter().map(|&pole| Pole::from(pole)).collect()).collect())
+            }
             (None, Some(k)) => Self::Gains(k),
             (None, None) => Self::Poles(default.map(|(pole, count)| vec![Pole::Real(pole); count]).to_vec()),
         };

@@ -7,7 +7,8 @@
 //! log_period_s = 0.01            # of the CSV file; metrics see every sample
 //! steady_from_s = 100.0          # steady errors are means from here to the end; left out: none
 //! vehicle = { payload_mass = 0.5, uav_mass = 2.5, rod_length = 2.0, inertia = [0.03, 0.03, 0.05], gravity = 9.81 }
-//! initial = { position = [0.0, 9.0, -10.0], alpha = 0.0 }   # any of the paper's coordinates, or "steady"
+//! initial = { position = [0.0, 9.0, -10.0], alpha = 0.0 }   # any of the paper's coordinates, or "steady": on the path
+//! limits = { max_thrust = 50.0, tilt_deg = 40.0 }   # of `hil-sim check`, see check::Limits::read
 //! obstacle = { at_s = 5.0, hold_s = 0.0 }
 //! path = { kind = "circle", radius = 5.0, p3 = -10.0, speed = -5.0 }          # law = "follow"
 //! reference = { kind = "circle", radius = 5.0, p3 = -10.0, rate = 1.0 }       # law = "track"
@@ -20,7 +21,13 @@
 //! k_integral = [0.0, 0.0, 0.0]
 //! zeta = [0.0, 0.0, 0.0, 0.0]    # ζ at the start
 //! vehicle = { payload_mass = 0.25 }  # what the law is told, where it differs from what flies
+//! latency_s = 0.0                # that the law knows of and looks ahead for
+//! rotor_lag_s = 0.0
+//! observer = { payload = 4.0, rod = 4.0, torque = 4.0 }                       # bandwidths, rad/s; 0 is off
+//! limits = { thrust = [3.0, 60.0], torque = [3.0, 3.0, 3.0] }                 # on its commands, N and N·m
 //! ```
+//!
+//! `[environment]`, `[sensors]` and `[actuators]` are described in [`models`](crate::models); `seed` is that of their random numbers.
 
 mod document;
 mod fields;
@@ -30,10 +37,13 @@ mod steady;
 
 pub use library::{FIGURES, builtin};
 
-use controller::{Gains, TrackGains, VehicleParams};
+use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
 
+use crate::check::Limits;
 use crate::course::{PathSpec, ReferenceSpec};
+use crate::models::{Actuators, Environment, Sensors};
 use crate::plant::VehicleParameters;
+use crate::world::WorldSpec;
 
 /// One flight, validated.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +62,16 @@ pub struct Scenario {
     pub initial: [f64; 16],
     /// An obstacle that stops the vehicle, if there is one.
     pub obstacle: Option<Obstacle>,
+    /// Forces, air, another payload.
+    pub environment: Environment,
+    /// What the controller sees of the state.
+    pub sensors: Sensors,
+    /// What becomes of its commands.
+    pub actuators: Actuators,
+    /// Of all that is random.
+    pub seed: u64,
+    /// What the vehicle may be asked to do on its path.
+    pub limits: Limits,
     /// s.
     pub duration_s: f64,
     /// RK4 steps of the plant in one control period.
@@ -75,10 +95,32 @@ pub struct ControllerSpec {
     pub look_ahead: bool,
     /// ζ at the start, m/s²⁺ᵏ.
     pub zeta: [f64; 4],
+    /// Latency that the law knows of, s.
+    pub latency_s: f64,
+    /// Time constant of the rotors that the law knows of, s.
+    pub rotor_lag_s: f64,
+    /// Its disturbance observers; off as the paper has it.
+    pub observer: ObserverParams<f64>,
+    /// What it may command.
+    pub limits: ActuatorLimits<f64>,
+}
+
+impl ControllerSpec {
+    /// When the law is called and when its command acts.
+    #[must_use]
+    pub fn sampling(&self) -> Sampling<f64> {
+        Sampling {
+            period: 1.0 / self.rate_hz,
+            latency: self.latency_s,
+            rotor_lag: self.rotor_lag_s,
+            look_ahead: self.look_ahead,
+        }
+    }
 }
 
 /// Which law flies, on what, with which gains.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is one a flight")]
 pub enum Law {
     /// Path following.
     Follow {
@@ -166,8 +208,20 @@ impl Scenario {
         let error = |line, message| ScenarioError { file: file.to_owned(), line, message };
         let document = document::Document::parse(text).map_err(|(line, message)| error(line, message))?;
         let name = std::path::Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-        fields::scenario(&name, text)
-            .map_err(|invalid| error(document.line_of(&invalid.field), invalid.to_string()))
+        fields::scenario(&name, text).map_err(|invalid| error(document.line_of(&invalid.field), invalid.to_string()))
+    }
+
+    /// All but the controller.
+    #[must_use]
+    pub fn world(&self) -> WorldSpec {
+        WorldSpec {
+            vehicle: self.vehicle,
+            environment: self.environment,
+            sensors: self.sensors,
+            actuators: self.actuators,
+            period: 1.0 / self.controller.rate_hz,
+            substeps: self.substeps,
+        }
     }
 
     /// Control periods in the flight.

@@ -30,7 +30,21 @@ pub(super) fn on_circle(vehicle: &VehicleParameters, radius: f64, p3: f64, speed
     let body_rate = [0.0, phi.cos() * theta_dot, -phi.sin() * theta_dot];
 
     [
-        0.0, radius, p3, alpha, 0.0, phi, 0.0, 0.0, -speed, 0.0, 0.0, 0.0, beta_dot, body_rate[0], body_rate[1],
+        0.0,
+        radius,
+        p3,
+        alpha,
+        0.0,
+        phi,
+        0.0,
+        0.0,
+        -speed,
+        0.0,
+        0.0,
+        0.0,
+        beta_dot,
+        body_rate[0],
+        body_rate[1],
         body_rate[2],
     ]
 }
@@ -42,9 +56,8 @@ mod tests {
     #[test]
     fn is_the_reference_state_of_figure_2() {
         let x = super::on_circle(&VehicleParameters::default(), 5.0, -10.0, -5.0);
-        let reference = [
-            0.0, 5.0, -10.0, -0.47136, 0.0, -0.40823, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.4541, 0.0, 0.39699, 0.17171,
-        ];
+        let reference =
+            [0.0, 5.0, -10.0, -0.47136, 0.0, -0.40823, 0.0, 0.0, 5.0, 0.0, 0.0, 0.0, 0.4541, 0.0, 0.39699, 0.17171];
         for (i, (computed, wanted)) in x.iter().zip(reference).enumerate() {
             // The reference is printed to five digits.
             assert!((computed - wanted).abs() < 5.1e-6, "coordinate {i}: {computed} against {wanted}");

@@ -1,0 +1,100 @@
+//! `run` and `figures`: fly, print, report.
+
+use hil_sim::batch::{self, Outcome};
+use hil_sim::reference::Reference;
+use hil_sim::report;
+use hil_sim::run::End;
+use hil_sim::scenario::{self, Scenario};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::error::Error;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{Common, Ended};
+
+/// The built-in scenarios of the paper's figures.
+pub fn figures() -> Result<Vec<Scenario>, Box<dyn Error>> {
+    let names = scenario::FIGURES.iter().map(|(name, _)| *name);
+    Ok(names.filter_map(scenario::builtin).collect::<Result<_, _>>()?)
+}
+
+/// Scenarios from files, or built in; each name once.
+pub fn load(files: &[PathBuf]) -> Result<Vec<Scenario>, Box<dyn Error>> {
+    let mut scenarios: Vec<Scenario> = Vec::new();
+    for file in files {
+        let scenario = load_one(file)?;
+        if scenarios.iter().any(|other| other.name == scenario.name) {
+            return Err(format!("{}: a second scenario named {}", file.display(), scenario.name).into());
+        }
+        scenarios.push(scenario);
+    }
+    Ok(scenarios)
+}
+
+fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
+    match std::fs::read_to_string(file) {
+        Ok(text) => Ok(Scenario::parse(&file.to_string_lossy(), &text)?),
+        Err(error) => {
+            match file.to_str().filter(|_| error.kind() == io::ErrorKind::NotFound).and_then(scenario::builtin) {
+                Some(scenario) => Ok(scenario?),
+                None => Err(format!("{}: {error}", file.display()).into()),
+            }
+        }
+    }
+}
+
+/// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
+pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler = Arc::clone(&stop);
+    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+
+    let planned = scenarios.len();
+    let bar = progress_bar(common.quiet, batch::work_s(&scenarios));
+    // The bar counts milliseconds of flight.
+    let outcomes = batch::fly_all(scenarios, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
+    bar.finish_and_clear();
+
+    let reference = Reference::builtin();
+    let page = report::write(&common.out, &outcomes, &reference)?;
+    if !common.quiet {
+        let slowest = outcomes.iter().map(|outcome| outcome.times_real_time).fold(f64::INFINITY, f64::min);
+        let mut out = io::stdout().lock();
+        writeln!(out, "{}", report::table(&outcomes, &reference))?;
+        if slowest.is_finite() {
+            writeln!(out, "One core flies the f32 law at {slowest:.0} times real time or more.")?;
+        }
+        writeln!(out, "Report: {}", page.display())?;
+    }
+    Ok(verdict(&outcomes, planned))
+}
+
+/// Complete or not, on standard error and as exit status; 130 after an interrupt, as shells have it.
+fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
+    let mut code = ExitCode::SUCCESS;
+    for outcome in outcomes {
+        if let End::NotFinite(at_s) = outcome.flight.end {
+            eprintln!("hil-sim: {}: the flight was lost at {at_s} s", outcome.scenario.name);
+            code = ExitCode::FAILURE;
+        }
+    }
+    if outcomes.len() < planned {
+        eprintln!("hil-sim: interrupted: {} of {planned} flights are complete and reported", outcomes.len());
+        code = ExitCode::from(130);
+    }
+    code
+}
+
+/// A bar on standard error; none where that is no terminal.
+fn progress_bar(quiet: bool, work_s: f64) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new((1e3 * work_s).round() as u64);
+    let style = ProgressStyle::with_template("{wide_bar} {percent}% of the flights, {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
