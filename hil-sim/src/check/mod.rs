@@ -5,6 +5,7 @@
 //! v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
 pub mod lap;
+mod limits;
 pub mod probe;
 pub mod refusal;
 mod report;
@@ -12,47 +13,12 @@ pub mod steady;
 pub mod walk;
 
 pub use lap::{Approach, Lap, Nearest, Node};
+pub use limits::Limits;
 pub use refusal::{Place, Reason, Refusal};
 pub use steady::Steady;
 
 use controller::{Path, Vector3, Vehicle};
 use probe::{Frame, Motion, at_speed, length, prescribed_speed, yaw};
-
-/// What a vehicle may be asked to do on its path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
-    /// Least and largest thrust, N.
-    pub thrust: [f64; 2],
-    /// Largest angle of the rod from straight down, rad.
-    pub rod_angle: f64,
-    /// Largest angle of b3 from straight down, rad.
-    pub tilt: f64,
-    /// Largest body rate |ω|, rad/s.
-    pub body_rate: f64,
-    /// Largest torque about any body axis, N·m.
-    pub torque: f64,
-    /// Least tension of the rod as a part of the payload's weight.
-    pub tension: f64,
-}
-
-impl Limits {
-    /// Thrust 0.2 to 2 times hover, rod and tilt 45°, 4 rad/s, tension 0.2 of the payload's weight; and per axis the torque of
-    /// a couple of a tenth of the hover thrust at the arm 0.33 m that gives 1 N·m to the paper's vehicle, in proportion to
-    /// its thrust.
-    #[must_use]
-    pub fn of(vehicle: &Vehicle<f64>) -> Self {
-        let hover = vehicle.hover_thrust();
-        let right_angle = std::f64::consts::FRAC_PI_2;
-        Self {
-            thrust: [0.2 * hover, 2.0 * hover],
-            rod_angle: right_angle / 2.0,
-            tilt: right_angle / 2.0,
-            body_rate: 4.0,
-            torque: 0.1 * hover * 0.34,
-            tension: 0.2,
-        }
-    }
-}
 
 /// A quantity's least and largest value over the lap, each with its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -193,25 +159,44 @@ pub fn check<P: Path<f64> + ?Sized>(
 
 /// The motion at the prescribed speed and the yaw along it, at every node.
 fn motions<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<Vec<(Motion, [f64; 3])>, Refusal> {
-    let mut motions: Vec<(Motion, [f64; 3])> = Vec::with_capacity(lap.nodes().len());
     let mut direction = 0.0_f64;
-    for node in lap.nodes() {
-        let refuse = |reason: Reason| reason.at(node.place());
-        let frame = Frame::at(path, node.position()).ok_or_else(|| refuse(Reason::Undefined))?;
-        let motion = prescribed_speed(path, &frame).ok_or_else(|| refuse(Reason::Undefined))?;
-        let speed = motion[1].dot(&frame.tangent);
-        // From the second node on the sign must stay.
-        if speed == 0.0 || speed * direction < 0.0 {
-            return Err(refuse(Reason::Stops));
-        }
-        direction = speed;
-        let yaw = yaw(path, &motion);
-        if !yaw.iter().all(|value| value.is_finite()) {
-            return Err(refuse(Reason::Undefined));
-        }
-        motions.push((motion, yaw));
+    lap.nodes()
+        .iter()
+        .map(|node| {
+            let (motion, yaw) = prescribed(path, node.position()).map_err(|reason| reason.at(node.place()))?;
+            let speed = motion[1].dot(&node.tangent());
+            // From the second node on the sign must stay.
+            if speed * direction < 0.0 {
+                return Err(Reason::Stops.at(node.place()));
+            }
+            direction = speed;
+            Ok((motion, yaw))
+        })
+        .collect()
+}
+
+/// The motion at the prescribed speed through a point of the curve, and the yaw along it.
+fn prescribed<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Result<(Motion, [f64; 3]), Reason> {
+    let frame = Frame::at(path, position).ok_or(Reason::Undefined)?;
+    let motion = prescribed_speed(path, &frame).ok_or(Reason::Undefined)?;
+    let yaw = yaw(path, &motion);
+    if motion[1].dot(&frame.tangent) == 0.0 {
+        return Err(Reason::Stops);
     }
-    Ok(motions)
+    if yaw.iter().all(|value| value.is_finite()) { Ok((motion, yaw)) } else { Err(Reason::Undefined) }
+}
+
+/// The vehicle's state and inputs at a point of the curve with all outputs and their derivatives zero.
+///
+/// # Errors
+/// [`Refusal`] if speed or yaw have no value there, or no thrust can give the motion.
+pub fn steady_at<P: Path<f64> + ?Sized>(
+    path: &mut P,
+    vehicle: &Vehicle<f64>,
+    place: Place,
+) -> Result<Steady, Refusal> {
+    let (motion, yaw) = prescribed(path, place.position).map_err(|reason| reason.at(place))?;
+    Steady::of(vehicle, &motion, &yaw).ok_or_else(|| Reason::FreeFall.at(place))
 }
 
 /// The highest constant speed whose demand keeps to the limits all the way up to it.

@@ -34,7 +34,8 @@ pub fn load(files: &[PathBuf]) -> Result<Vec<Scenario>, Box<dyn Error>> {
     Ok(scenarios)
 }
 
-fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
+/// A scenario from a file, or built in.
+pub fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
     match std::fs::read_to_string(file) {
         Ok(text) => Ok(Scenario::parse(&file.to_string_lossy(), &text)?),
         Err(error) => {
@@ -52,6 +53,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
     let handler = Arc::clone(&stop);
     ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
 
+    super::check::warn(&scenarios);
     let planned = scenarios.len();
     let bar = progress_bar(common.quiet, batch::work_s(&scenarios));
     // The bar counts milliseconds of flight.
@@ -59,7 +61,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
     bar.finish_and_clear();
 
     let reference = Reference::builtin();
-    let page = report::write(&common.out, &outcomes, &reference)?;
+    let page = report::write(common.folder(), &outcomes, &reference)?;
     if !common.quiet {
         let slowest = outcomes.iter().map(|outcome| outcome.times_real_time).fold(f64::INFINITY, f64::min);
         let mut out = io::stdout().lock();
@@ -73,7 +75,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
 }
 
 /// Complete or not, on standard error and as exit status; 130 after an interrupt, as shells have it.
-fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
+pub fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for outcome in outcomes {
         if let End::NotFinite(at_s) = outcome.flight.end {
@@ -89,7 +91,7 @@ fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
 }
 
 /// A bar on standard error; none where that is no terminal.
-fn progress_bar(quiet: bool, work_s: f64) -> ProgressBar {
+pub fn progress_bar(quiet: bool, work_s: f64) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }

@@ -1,11 +1,14 @@
 //! The command line: one file a command.
 
+mod check;
 mod eval;
+mod fit;
 mod fly;
+mod hil;
 
 use clap::{Parser, Subcommand};
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// What a command ends with: an exit status, or an error to be printed.
@@ -20,7 +23,10 @@ type Ended = Result<ExitCode, Box<dyn Error>>;
     after_help = "Examples:
   hil-sim                            fly the paper's figures, report in out/
   hil-sim run my-flight.toml         fly a scenario of your own
+  hil-sim fit waypoints.csv --out path.toml    a closed curve through waypoints
+  hil-sim check my-flight.toml       can its path be flown, and how fast?
   hil-sim eval < points.jsonl        evaluate the law, one JSON object a line
+  hil-sim hil --port /dev/ttyUSB0    fly with the controller on a board
 
 Each command has its own --help with examples."
 )]
@@ -37,9 +43,16 @@ struct Common {
     /// Print nothing but errors.
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Folder for reports; made if it is not there.
-    #[arg(long, global = true, default_value = "out", value_name = "DIR")]
-    out: PathBuf,
+    /// Folder for reports, made if it is not there (out if not given); for `fit`, the file of the path.
+    #[arg(long, global = true, value_name = "PATH")]
+    out: Option<PathBuf>,
+}
+
+impl Common {
+    /// The folder for reports.
+    fn folder(&self) -> &Path {
+        self.out.as_deref().unwrap_or(Path::new("out"))
+    }
 }
 
 #[derive(Subcommand)]
@@ -69,6 +82,35 @@ enum Command {
     /// adds "b" and "A"). The state is taken as it is, without prediction; "integral" and "k_integral" may be left out.
     #[command(after_help = eval::EXAMPLES)]
     Eval,
+    /// Say whether paths can be flown, before anyone takes off.
+    ///
+    /// Walks each curve once round: is it closed, smooth, regular, free of self-crossings? Then what it asks of the vehicle at its
+    /// speed, and the highest constant speed within the limits. Refuses with the place. The exit status is 0 if all can be flown
+    /// within their limits.
+    #[command(after_help = check::EXAMPLES)]
+    Check {
+        /// Scenario files, files with a [path], or names of built-in scenarios.
+        #[arg(required = true, value_name = "FILE")]
+        files: Vec<PathBuf>,
+    },
+    /// Fit a closed smooth curve to waypoints.
+    ///
+    /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and what there is to know of it.
+    #[command(after_help = fit::EXAMPLES)]
+    Fit(fit::FitArguments),
+    /// Fly with the controller at the other end of a serial line, a socket, or in an emulator.
+    ///
+    /// In lockstep, each state is one control step of the target, and the flight is the same, bit by bit, as in this program. Same
+    /// tables and report as `run`, and the link's and the target's numbers beside them (hil.json).
+    #[command(after_help = hil::EXAMPLES)]
+    Hil(hil_sim::hil::Arguments),
+    /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to connect to.
+    #[command(after_help = hil::TARGET_EXAMPLES)]
+    Target {
+        /// Where: unix:PATH or tcp:HOST:PORT.
+        #[arg(long, value_name = "ENDPOINT")]
+        listen: String,
+    },
 }
 
 /// Does what the command line says.
@@ -78,5 +120,9 @@ pub fn run() -> Ended {
         Some(Command::Run { files }) => fly::fly(&common, fly::load(&files)?),
         Some(Command::Figures) | None => fly::fly(&common, fly::figures()?),
         Some(Command::Eval) => eval::evaluate_lines(),
+        Some(Command::Check { files }) => check::check(&common, &files),
+        Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
+        Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),
+        Some(Command::Target { listen }) => hil::target(&common, &listen),
     }
 }

@@ -29,7 +29,7 @@ use controller::path::Profiled;
 use controller::{OutOfRange, Path, Real, Vector3, Vehicle};
 use std::sync::OnceLock;
 
-use crate::check::{self, Lap, Limits, Refusal, Report};
+use crate::check::{self, Lap, Limits, Refusal, Report, Steady};
 use crate::plant::distance_to_circle;
 use crate::witness::{Evaluation, Operating, OutputGains, Singular};
 
@@ -103,6 +103,15 @@ impl PathSpec {
     pub fn check(&self, vehicle: &Vehicle<f64>, limits: &Limits) -> Result<Report, Refusal> {
         let mut path = self.engaged(self.hint())?;
         check::check(&mut path, vehicle, limits, self.hint())
+    }
+
+    /// The vehicle's state and ζ at the start of the [lap](Self::lap), with all outputs and their derivatives zero.
+    ///
+    /// # Errors
+    /// [`Refusal`] if there is no such motion.
+    pub fn steady(&self, vehicle: &Vehicle<f64>) -> Result<Steady, Refusal> {
+        let place = self.lap()?.at(0.0);
+        check::steady_at(&mut self.engaged(place.position)?, vehicle, place)
     }
 
     /// The path in f64, with its nearest point searched for `position`.

@@ -1,0 +1,97 @@
+//! `check`: can a path be flown?
+
+use controller::{Vehicle, VehicleParams};
+use hil_sim::check::Limits;
+use hil_sim::course::{PathSpec, parse_path};
+use hil_sim::plant::VehicleParameters;
+use hil_sim::scenario::{Law, Scenario};
+use std::error::Error;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use super::{Common, Ended, fly};
+
+/// Each example can be pasted into a shell.
+pub const EXAMPLES: &str = "Examples:
+  hil-sim check fig3a                a built-in scenario
+  hil-sim check my-flight.toml       the path of a scenario
+  hil-sim check path.toml            a [path] alone, as `hil-sim fit` writes it, for the paper's vehicle
+
+A [limits] table states what the vehicle may be asked for: min_thrust, max_thrust (N), rod_angle_deg, tilt_deg,
+body_rate (rad/s), torque (N m, per axis), tension (part of the payload's weight).";
+
+/// Prints what each path asks of its vehicle. Fails if one can't be flown or exceeds a limit.
+pub fn check(common: &Common, files: &[PathBuf]) -> Ended {
+    let mut code = ExitCode::SUCCESS;
+    for file in files {
+        let (path, vehicle, limits) = subject(file)?;
+        let name = file.display();
+        match path.check(&vehicle, &limits) {
+            Ok(report) => {
+                if !common.quiet {
+                    writeln!(io::stdout().lock(), "{name}\n{report}")?;
+                }
+                for excess in &report.excesses {
+                    eprintln!("hil-sim: {name}: {excess}");
+                    code = ExitCode::FAILURE;
+                }
+            }
+            Err(refusal) => {
+                eprintln!("hil-sim: {name}: refused: {refusal}");
+                code = ExitCode::FAILURE;
+            }
+        }
+    }
+    Ok(code)
+}
+
+/// Warns of each path that can't be flown or exceeds a limit, before it is flown.
+pub fn warn(scenarios: &[Scenario]) {
+    for scenario in scenarios {
+        let Law::Follow { path, .. } = &scenario.controller.law else { continue };
+        // The scenario's vehicle has been validated.
+        let Ok(vehicle) = vehicle(&scenario.vehicle) else { continue };
+        match path.check(&vehicle, &scenario.limits) {
+            Ok(report) => {
+                for excess in report.excesses {
+                    eprintln!("hil-sim: {}: warning: {excess}", scenario.name);
+                }
+            }
+            Err(refusal) => eprintln!("hil-sim: {}: warning: this path cannot be flown: {refusal}", scenario.name),
+        }
+    }
+}
+
+/// What is to be checked: the path of a scenario, or of a file without a controller, which is for the paper's vehicle.
+fn subject(file: &Path) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Error>> {
+    if let Ok(text) = std::fs::read_to_string(file) {
+        let table: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?;
+        if !table.contains_key("controller") {
+            return path_alone(table).map_err(|error| format!("{}: {error}", file.display()).into());
+        }
+    }
+    let scenario = fly::load_one(file)?;
+    match scenario.controller.law {
+        Law::Follow { path, .. } => Ok((path, vehicle(&scenario.vehicle)?, scenario.limits)),
+        Law::Track { .. } => Err(format!("{}: the law \"track\" has no path to check", file.display()).into()),
+    }
+}
+
+fn path_alone(mut table: toml::Table) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Error>> {
+    let vehicle = vehicle(&VehicleParameters::default())?;
+    let limits = match table.remove("limits") {
+        Some(value) => Limits::read("limits", value, &vehicle)?,
+        None => Limits::of(&vehicle),
+    };
+    let path = table.remove("path").ok_or("path: missing")?;
+    if let Some(unknown) = table.keys().next() {
+        return Err(format!("{unknown}: a file without controller has path and limits only").into());
+    }
+    Ok((parse_path("path", path)?, vehicle, limits))
+}
+
+fn vehicle(params: &VehicleParameters) -> Result<Vehicle<f64>, Box<dyn Error>> {
+    let VehicleParameters { payload_mass, uav_mass, rod_length, inertia, gravity } = *params;
+    Ok(Vehicle::new(VehicleParams { payload_mass, uav_mass, rod_length, inertia, gravity })?)
+}
