@@ -7,8 +7,8 @@ use crate::scalar::Real;
 
 /// Newton steps from the last sample's nearest point to the present one, always all of them.
 ///
-/// The error falls quadratically from the distance flown since the last sample: from 5 cm on a curve of radius 5 m, to 1e-4,
-/// 1e-8 and 1e-16 rad.
+/// The error falls quadratically from the distance flown since the last sample. Random loops of 8 harmonics and some 5 m radius, followed
+/// at 0.8 of their reach with 15 cm a sample, leave 3e-6 m in f32.
 pub const NEWTON_STEPS: usize = 3;
 
 /// Newton steps after the search of the whole curve.
