@@ -204,11 +204,8 @@ fn acceleration(
     let VehicleParameters { payload_mass, uav_mass, rod_length, inertia: [j1, j2, j3], gravity } = *vehicle;
     let (q, w, omega) = (vector(x, 6), vector(x, 9), vector(x, 16));
     let [q0, q1, q2, q3] = [x[12], x[13], x[14], x[15]];
-    let b3 = Vector3::new(
-        2.0 * (q1 * q3 + q0 * q2),
-        2.0 * (q2 * q3 - q0 * q1),
-        q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3,
-    );
+    let b3 =
+        Vector3::new(2.0 * (q1 * q3 + q0 * q2), 2.0 * (q2 * q3 - q0 * q1), q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3);
     // What acts on the UAV but for gravity and rod.
     let uav = loads.uav_force - b3 * command.thrust;
     let apart = (loads.payload_force / payload_mass - uav / uav_mass) / rod_length;
@@ -276,9 +273,11 @@ mod tests {
 
     #[test]
     fn quaternions_of_rotations_by_half_turns_come_back() {
-        for quaternion_in in [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.6, 0.8, 0.0], [0.5, -0.5, 0.5, 0.5]] {
+        for quaternion_in in [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.6, 0.8, 0.0], [0.5, -0.5, 0.5, 0.5]]
+        {
             let back = quaternion(&rotation(quaternion_in));
-            let sign = if back.iter().zip(&quaternion_in).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
+            let sign =
+                if back.iter().zip(&quaternion_in).map(|(a, b)| a * b).sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
             for (part, wanted) in back.iter().zip(&quaternion_in) {
                 assert!((sign * part - wanted).abs() < 4.0 * f64::EPSILON, "{back:?}");
             }

@@ -1,0 +1,174 @@
+//! Everything outside the controller: the slung load in its environment, behind its actuators, seen through its sensors.
+//!
+//! A flight calls [`World::read`] and [`World::advance`] in turn, once a control period. What happens is a function of the
+//! [`WorldSpec`], the start and the seed alone.
+
+use controller::{Command, State, Vector3};
+
+use crate::models::{ActuatorModel, Actuators, Dryden, Environment, SensorModel, Sensors, drag};
+use crate::multibody::{Loads, Multibody};
+use crate::plant::VehicleParameters;
+use crate::random::{Purpose, Stream};
+
+/// What flies, where, and behind what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldSpec {
+    /// The vehicle.
+    pub vehicle: VehicleParameters,
+    /// Forces, air, another payload.
+    pub environment: Environment,
+    /// The sensors.
+    pub sensors: Sensors,
+    /// Latency, lag, limits.
+    pub actuators: Actuators,
+    /// Control period, s.
+    pub period: f64,
+    /// Runge-Kutta steps in a control period.
+    pub substeps: u32,
+}
+
+/// The seed of one flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seed {
+    /// Of the batch.
+    pub batch: u64,
+    /// The flight's number in it.
+    pub run: u64,
+}
+
+impl Seed {
+    /// The stream for a purpose.
+    #[must_use]
+    pub fn stream(self, purpose: Purpose) -> Stream {
+        Stream::new(self.batch, self.run, purpose)
+    }
+}
+
+/// The world at work.
+#[derive(Clone, Debug)]
+pub struct World {
+    spec: WorldSpec,
+    body: Multibody,
+    actuators: ActuatorModel,
+    sensors: SensorModel,
+    gusts: Option<Dryden>,
+    /// Velocity of the air in N over the running period, m/s.
+    air: Vector3<f64>,
+    /// ½ ρ C_d A of payload and UAV, kg/m.
+    drag: [f64; 2],
+    t_s: f64,
+}
+
+impl World {
+    /// At time 0 in `state`, with `command` acting for long.
+    #[must_use]
+    pub fn new(spec: &WorldSpec, state: &State<f64>, command: Command<f64>, seed: Seed) -> Self {
+        let body = Multibody::new(spec.vehicle, state);
+        let air = spec.environment.air;
+        let wind = air.map_or(Vector3::zeros(), |air| Vector3::from(air.wind));
+        let gusts = air.and_then(|air| air.gusts);
+        Self {
+            actuators: ActuatorModel::new(spec.actuators, command),
+            sensors: SensorModel::new(spec.sensors, spec.period, &body.state(), seed.stream(Purpose::Sensor)),
+            gusts: gusts.map(|gusts| Dryden::new(&gusts, &wind, spec.period, seed.stream(Purpose::Gust))),
+            air: wind,
+            drag: air.map_or([0.0; 2], |air| {
+                [air.payload_drag_area, air.uav_drag_area].map(|area| 0.5 * air.density * area)
+            }),
+            body,
+            spec: *spec,
+            t_s: 0.0,
+        }
+    }
+
+    /// Time, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.t_s
+    }
+
+    /// The vehicle as it moves.
+    #[must_use]
+    pub fn body(&self) -> &Multibody {
+        &self.body
+    }
+
+    /// The state now, read by the sensors. Once a period.
+    #[inline]
+    pub fn read(&mut self) -> State<f64> {
+        self.sensors.read(self.t_s, &self.body.state())
+    }
+
+    /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities zero; position and yaw stay.
+    pub fn stop(&mut self, yaw: f64) {
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let mut state = State::at_rest(self.body.state().position);
+        state.attitude = controller::Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        self.body = Multibody::new(*self.body.vehicle(), &state);
+    }
+
+    /// Passes one control period in which the vehicle is held where it is.
+    pub fn wait(&mut self) {
+        self.t_s += self.spec.period;
+    }
+
+    /// Passes one control period under `command`, given at its start.
+    #[inline]
+    pub fn advance(&mut self, command: &Command<f64>) {
+        self.step_payload();
+        if let Some(gusts) = &mut self.gusts {
+            let mean = self.spec.environment.air.map_or([0.0; 3], |air| air.wind);
+            self.air = Vector3::from(mean) + gusts.step();
+        }
+        self.actuators.push(self.t_s, command);
+        let end_s = self.t_s + self.spec.period;
+        // A piece shorter than the clock's rounding ends the period.
+        while end_s - self.t_s > 1e-12 {
+            let piece = self.actuators.piece(self.t_s, end_s);
+            self.fly(piece);
+            self.t_s += piece;
+        }
+        self.t_s = end_s;
+    }
+
+    /// Flies a piece of time in which the rotors are told one thing.
+    #[inline]
+    fn fly(&mut self, piece: f64) {
+        let Environment { payload_force, uav_force, torque, .. } = self.spec.environment;
+        let constant = Loads {
+            payload_force: Vector3::from(payload_force),
+            uav_force: Vector3::from(uav_force),
+            torque: Vector3::from(torque),
+        };
+        let (air, [payload_drag, uav_drag]) = (self.air, self.drag);
+        let loads = |payload: &Vector3<f64>, uav: &Vector3<f64>| {
+            let mut loads = constant;
+            if payload_drag > 0.0 || uav_drag > 0.0 {
+                loads.payload_force += drag(payload_drag, &air, payload);
+                loads.uav_force += drag(uav_drag, &air, uav);
+            }
+            loads
+        };
+        let share = piece / self.spec.period * f64::from(self.spec.substeps);
+        let steps = (share - 1e-6).ceil().max(1.0);
+        let step = piece / steps;
+        for index in 0..steps as u32 {
+            let start = step * f64::from(index);
+            let actuators = &self.actuators;
+            self.body.advance(step, |t| actuators.at(start + t), loads);
+        }
+        self.actuators.pass(piece);
+    }
+
+    fn step_payload(&mut self) {
+        if let Some(step) = self.spec.environment.payload_step
+            && self.t_s >= step.at_s - 0.5 * self.spec.period
+            && self.body.vehicle().payload_mass != step.mass
+        {
+            self.body.set_payload_mass(step.mass);
+            if let (Some(area), Some(air)) = (step.drag_area, self.spec.environment.air) {
+                self.drag[0] = 0.5 * air.density * area;
+            }
+        }
+    }
+}
