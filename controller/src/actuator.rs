@@ -101,12 +101,17 @@ impl<T: Real> Actuators<T> {
         &self.step
     }
 
+    /// The last command sent.
+    #[inline]
+    pub(crate) fn newest(&self) -> &Command<T> {
+        self.line.get(self.newest).unwrap_or(&self.applied)
+    }
+
     /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is known before the coming command;
     /// `None` without latency and lag.
     #[inline]
     pub(crate) fn drift(&self) -> Option<Command<T>> {
-        let newest = self.line.get(self.newest).filter(|_| self.share > T::zero())?;
-        Some(newest.minus(&self.applied).times(self.share))
+        (self.share > T::zero()).then(|| self.newest().minus(&self.applied).times(self.share))
     }
 
     /// Sends the command for the coming hold.

@@ -119,6 +119,8 @@ pub struct Approach<T> {
     displacement: Vector3<T>,
     /// V, m/s.
     velocity: Vector3<T>,
+    /// (∇h1 × ∇h2)·ρ at p₀.
+    path_det: T,
     /// v_d − 0 and ψ − ψ_d at engagement.
     speed: T,
     yaw: T,
@@ -135,6 +137,7 @@ impl<T: Real> Approach<T> {
         Self {
             displacement: Vector3::zeros(),
             velocity: Vector3::zeros(),
+            path_det: T::one(),
             speed: zero,
             yaw: zero,
             elapsed: zero,
@@ -156,6 +159,7 @@ impl<T: Real> Approach<T> {
         let nearest = nearest_point(path, position)?;
         path.engage(&nearest);
         let outputs = path.outputs(&[nearest.x, nearest.y, nearest.z].map(Series::constant));
+        let [g1, g2] = &outputs.gradients;
         let shortest = T::lit(SHORTEST);
         let braking = limits.braking(vehicle, length(velocity)).max(shortest);
         let displacement = position - nearest + velocity * (braking * T::lit(0.5));
@@ -163,6 +167,7 @@ impl<T: Real> Approach<T> {
         Some(Self {
             displacement,
             velocity: *velocity,
+            path_det: g1.cross(g2).dot(&outputs.tangent),
             speed: outputs.speed_error.value(),
             yaw: (Yaw::of(state).angle - outputs.yaw.value()).wrap_angle(),
             elapsed: T::zero(),
@@ -178,6 +183,11 @@ impl<T: Real> Approach<T> {
     /// Whether the path is still displaced.
     pub fn is_active(&self) -> bool {
         self.elapsed < self.duration()
+    }
+
+    /// The determinant (∇h1 × ∇h2)·ρ of the path's 3×3 system at the point that was joined; 1 if none was.
+    pub fn path_det(&self) -> T {
+        self.path_det
     }
 
     /// Time left, s.

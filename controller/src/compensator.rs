@@ -26,8 +26,19 @@ impl<T: Real> Command<T> {
     }
 
     #[inline]
+    pub(crate) fn plus(&self, other: &Self) -> Self {
+        Self { thrust: self.thrust + other.thrust, torque: self.torque + other.torque }
+    }
+
+    #[inline]
     pub(crate) fn minus(&self, other: &Self) -> Self {
         Self { thrust: self.thrust - other.thrust, torque: self.torque - other.torque }
+    }
+
+    /// No infinity, no NaN.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        (self.thrust + self.torque.x + self.torque.y + self.torque.z).is_finite()
     }
 
     #[inline]

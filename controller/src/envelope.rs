@@ -1,6 +1,10 @@
-//! The law's distances from where it is singular.
+//! The law's distances from where it is singular, and the envelope it is flown within.
 
-/// The five numbers the law divides by, as signed distances from zero: the paper's singularities and the path's.
+use crate::error::OutOfRange;
+use crate::scalar::Real;
+use crate::vehicle::Vehicle;
+
+/// The numbers the law divides by, as signed distances from zero: the paper's singularities, the path's and the yaw's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins<T> {
     /// q·e3, cos α cos β: 1 hanging straight down, 0 with the rod horizontal.
@@ -13,6 +17,172 @@ pub struct Margins<T> {
     pub kappa: T,
     /// (∇h1 × ∇h2)·ρ, in the units of h1 and h2 per m²; 1 for trajectory tracking. Negative where ρ is the opposite of (3).
     pub path_det: T,
+    /// What is left of the reach of a path with a nearest point; 1 for the others.
+    pub reach: T,
     /// cos²φ: 0 where yaw is not defined.
     pub cos_phi_squared: T,
+}
+
+impl<T: Real> Margins<T> {
+    /// As at hover, for commands that no law made.
+    pub(crate) fn at_hover() -> Self {
+        let one = T::one();
+        Self { q3: one, q_b3: one, lambda: -one, kappa: one, path_det: one, reach: one, cos_phi_squared: one }
+    }
+}
+
+/// Which margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Margin {
+    /// The rod's angle from the vertical (α, β → π/2).
+    RodAngle,
+    /// The angle between thrust axis and rod (b3 ⊥ q).
+    ThrustAngle,
+    /// The tension of the rod (free fall).
+    Tension,
+    /// The thrust (T → 0).
+    Thrust,
+    /// The regularity of the path's functions (∇h1 ∥ ∇h2, or one of them zero).
+    Path,
+    /// The reach of a path with a nearest point.
+    Reach,
+    /// The yaw's chart (φ → π/2).
+    Yaw,
+}
+
+/// Where a margin begins to count, and where it ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band<T> {
+    /// Crossing it is reported.
+    pub warning: T,
+    /// Crossing it ends the law's flight.
+    pub limit: T,
+}
+
+/// The envelope in physical terms. Angles and their warnings below their limits, the others above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnvelopeParams<T> {
+    /// Rod from the vertical, rad.
+    pub rod_angle: Band<T>,
+    /// Thrust axis from the rod, rad.
+    pub thrust_angle: Band<T>,
+    /// Roll φ of the yaw's chart, rad.
+    pub roll: Band<T>,
+    /// Tension of the rod as the law knows the payload, N.
+    pub tension: Band<T>,
+    /// Thrust, N.
+    pub thrust: Band<T>,
+    /// The determinant of the path's 3×3 system, as a share of its value on the path.
+    pub path: Band<T>,
+    /// What is left of the path's reach, as a share.
+    pub reach: Band<T>,
+}
+
+impl<T: Real> EnvelopeParams<T> {
+    /// Angles to 70° (warning at 55°), tension and thrust down to a tenth of their values at hover (a quarter), path to a tenth, reach to a
+    /// twentieth (a fifth each).
+    pub fn wide(vehicle: &Vehicle<T>) -> Self {
+        let angle = Band { warning: T::lit(0.96), limit: T::lit(1.22) };
+        let share = |of: T| Band { warning: of * T::lit(0.25), limit: of * T::lit(0.1) };
+        let params = vehicle.params();
+        Self {
+            rod_angle: angle,
+            thrust_angle: angle,
+            roll: angle,
+            tension: share(params.payload_mass * params.gravity),
+            thrust: share(vehicle.hover_thrust()),
+            path: Band { warning: T::lit(0.2), limit: T::lit(0.1) },
+            reach: Band { warning: T::lit(0.2), limit: T::lit(0.05) },
+        }
+    }
+}
+
+/// How a flight stands in its envelope.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Standing {
+    /// No margin counts.
+    Inside,
+    /// This margin is past its warning.
+    Warning(Margin),
+    /// This margin is past its limit.
+    Beyond(Margin),
+}
+
+/// A margin's thresholds as the law's own number has them.
+#[derive(Clone, Copy, Debug)]
+struct Threshold<T> {
+    margin: Margin,
+    warning: T,
+    limit: T,
+}
+
+/// An envelope whose parameters are in range.
+#[derive(Clone, Copy, Debug)]
+pub struct Envelope<T> {
+    thresholds: [Threshold<T>; 7],
+}
+
+impl<T: Real> Envelope<T> {
+    /// Checks every parameter; an error names the first that is out of range.
+    pub fn new(vehicle: &Vehicle<T>, params: &EnvelopeParams<T>) -> Result<Self, OutOfRange<T>> {
+        let angle = |margin, field, band: &Band<T>| {
+            OutOfRange::check(field, band.limit, 0.05, 1.5)?;
+            OutOfRange::check(field, band.warning, 0.0, band.limit.to_f64())?;
+            let (_, warning) = band.warning.sin_cos();
+            let (_, limit) = band.limit.sin_cos();
+            Ok(Threshold { margin, warning, limit })
+        };
+        let least = |margin, field, band: &Band<T>, largest: T, unit: T| {
+            OutOfRange::check(field, band.limit, 0.0, largest.to_f64())?;
+            OutOfRange::check(field, band.warning, band.limit.to_f64(), largest.to_f64())?;
+            Ok(Threshold { margin, warning: band.warning * unit, limit: band.limit * unit })
+        };
+        let squared = |threshold: Threshold<T>| Threshold {
+            warning: threshold.warning * threshold.warning,
+            limit: threshold.limit * threshold.limit,
+            ..threshold
+        };
+        let one = T::one();
+        let payload = vehicle.params().payload_mass;
+        let weight = payload * vehicle.params().gravity;
+        Ok(Self {
+            thresholds: [
+                angle(Margin::RodAngle, "rod_angle", &params.rod_angle)?,
+                angle(Margin::ThrustAngle, "thrust_angle", &params.thrust_angle)?,
+                least(Margin::Tension, "tension", &params.tension, weight, one / payload)?,
+                least(Margin::Thrust, "thrust", &params.thrust, vehicle.hover_thrust(), vehicle.kappa_per_thrust)?,
+                least(Margin::Path, "path", &params.path, one, one)?,
+                least(Margin::Reach, "reach", &params.reach, one, one)?,
+                squared(angle(Margin::Yaw, "roll", &params.roll)?),
+            ],
+        })
+    }
+
+    /// How `margins` stand, with the determinant of the path's system as a share of `path_det`, its value on the path. What is not a number
+    /// is beyond.
+    #[inline]
+    pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
+        let values = [
+            margins.q3,
+            margins.q_b3,
+            -margins.lambda,
+            margins.kappa,
+            margins.path_det / path_det,
+            margins.reach,
+            margins.cos_phi_squared,
+        ];
+        let mut standing = Standing::Inside;
+        for (value, threshold) in values.into_iter().zip(&self.thresholds) {
+            if value >= threshold.warning {
+                continue;
+            }
+            if value >= threshold.limit {
+                standing = Standing::Warning(threshold.margin);
+            } else {
+                return Standing::Beyond(threshold.margin);
+            }
+        }
+        standing
+    }
 }

@@ -129,6 +129,7 @@ pub fn law<T: Real, P: Path<T> + ?Sized>(
             lambda: lift.lambda[0],
             kappa: lift.kappa,
             path_det,
+            reach: outputs.reach_margin,
             cos_phi_squared: yaw.cos_phi_squared,
         },
     }
@@ -224,20 +225,21 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     }
 
     /// Joins the path from afar, within `limits`: [engages](Self::engage), and slides the path from where the payload is to where it
-    /// belongs. An error names the limit that is out of range; `false` if no point of the path was found, and nothing is engaged.
-    pub fn join(
-        &mut self,
-        state: &State<T>,
-        applied: Command<T>,
-        limits: &ApproachLimits<T>,
-    ) -> Result<bool, OutOfRange<T>> {
-        let vehicle = self.sampler.vehicle();
-        limits.check(vehicle)?;
-        let Some(approach) = Approach::start(vehicle, &mut self.path, limits, state) else { return Ok(false) };
+    /// belongs. `false` if no point of the path was found: then nothing is engaged.
+    pub fn join(&mut self, state: &State<T>, applied: Command<T>, limits: &ApproachLimits<T>) -> bool {
         self.sampler.engage(state, applied);
+        self.rejoin(state, limits)
+    }
+
+    /// Joins the path from what is being commanded, with what is known of disturbances.
+    pub(crate) fn rejoin(&mut self, state: &State<T>, limits: &ApproachLimits<T>) -> bool {
+        let Some(approach) = Approach::start(self.sampler.vehicle(), &mut self.path, limits, state) else {
+            return false;
+        };
+        self.sampler.take_over(state);
         self.integral = [T::zero(); 3];
         self.approach = approach;
-        Ok(true)
+        true
     }
 
     fn begin(&mut self, state: &State<T>) {
@@ -247,20 +249,38 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     }
 
     /// The command for the coming hold, from the state sampled now. Call once every period.
+    ///
+    /// This is the bare law: near its singularities it answers what it must. [`Supervisor`](crate::supervisor::Supervisor) is total.
     #[inline]
     pub fn step(&mut self, sampled: &State<T>) -> Solution<T, Xi<T>> {
-        let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
-        let vehicle = self.sampler.vehicle();
+        let ahead = self.sampler.ahead(sampled);
+        let mut solution = self.evaluate(&ahead);
+        solution.command = self.accept(&solution);
+        solution
+    }
+
+    /// The law's answer for the coming hold.
+    #[inline]
+    pub(crate) fn evaluate(&mut self, ahead: &Ahead<T>) -> Solution<T, Xi<T>> {
         let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
-        let mut solution = law(vehicle, &mut path, &self.gains, &state, &zeta, &self.integral, &disturbance);
-        solution.command = self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins);
+        let Ahead { state, zeta, disturbance } = ahead;
+        law(self.sampler.vehicle(), &mut path, &self.gains, state, zeta, &self.integral, disturbance)
+    }
+
+    /// Takes an answer: limits and sends its command, and moves on by a period.
+    #[inline]
+    pub(crate) fn accept(&mut self, solution: &Solution<T, Xi<T>>) -> Command<T> {
         let period = self.sampler.period();
         self.approach.advance(period);
         let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
         for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
             *integral += period * h;
         }
-        solution
+        self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins)
+    }
+
+    pub(crate) fn sampler(&mut self) -> &mut Sampler<T> {
+        &mut self.sampler
     }
 
     /// ζ when the next command begins to act (the next sample, without latency and lag).

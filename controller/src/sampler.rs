@@ -54,7 +54,7 @@ impl<T: Real> Sampling<T> {
     }
 }
 
-/// Time constant with which the torque passes from what was applied before a take-over to the law's, s.
+/// Time constant with which thrust and torque pass from what was applied before a take-over to the law's, s.
 const TAKE_OVER: f64 = 0.05;
 
 /// Where a law is to be evaluated: state, ζ and disturbance at the instant its command acts.
@@ -76,8 +76,8 @@ pub struct Sampler<T> {
     /// prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
-    /// What is left of the torque's step at a take-over, N·m; `None` until the first command shows the step.
-    bump: Option<Vector3<T>>,
+    /// What is left of the command's step at a take-over; `None` until the first command shows the step.
+    bump: Option<Command<T>>,
     /// What a period leaves of it.
     fade: T,
     limits: ActuatorLimits<T>,
@@ -99,7 +99,7 @@ impl<T: Real> Sampler<T> {
             horizon,
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
-            bump: Some(Vector3::zeros()),
+            bump: Some(Command::zero()),
             fade: (-period / T::lit(TAKE_OVER)).exp(),
             limits: ActuatorLimits::none(),
             actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
@@ -124,17 +124,60 @@ impl<T: Real> Sampler<T> {
         self.reset(state, zeta, Command { thrust, torque: Vector3::zeros() });
     }
 
-    /// Takes over from whatever applied `applied` until now, with the ζ that continues it.
+    /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
     pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        let zeta = continuing(&self.vehicle, state, &applied, &Disturbance::none());
-        self.reset(state, zeta, applied);
+        self.reset(state, [T::zero(); 4], applied);
+        self.take_over(state);
+    }
+
+    /// Continues what is being applied, with the ζ that does. The first command's step against it fades.
+    pub(crate) fn take_over(&mut self, state: &State<T>) {
+        self.zeta = continuing(&self.vehicle, state, self.actuators.applied(), self.observer.estimate());
+        self.u_zeta = T::zero();
         self.bump = None;
+    }
+
+    /// Has the next command's step against what is being applied fade.
+    pub(crate) fn soften(&mut self) {
+        self.bump = None;
+    }
+
+    /// Lets a period pass without a usable state: the last command goes on.
+    pub(crate) fn coast(&mut self) -> Command<T> {
+        self.zeta = propagate(&self.zeta, self.u_zeta, self.period);
+        let last = *self.actuators.newest();
+        self.send(&last)
+    }
+
+    /// Limits and sends a command that is no law's.
+    pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
+        let applied = self.limits.limit(command);
+        self.actuators.push(applied);
+        applied
+    }
+
+    /// What may be commanded.
+    pub(crate) fn limits(&self) -> &ActuatorLimits<T> {
+        &self.limits
+    }
+
+    /// The payload mass, kg, that the estimate implies in still air.
+    pub(crate) fn implied_payload_mass(&self, state: &State<T>) -> T {
+        let lambda = Model::at(&self.vehicle, state).lambda(self.actuators.applied().thrust);
+        self.observer.estimate().implied_payload_mass(&self.vehicle, &state.rod, lambda)
+    }
+
+    /// After periods without a usable state: the observers start from `state`, with their estimates.
+    pub(crate) fn resume(&mut self, state: &State<T>) {
+        let estimate = *self.observer.estimate();
+        let acceleration = Model::at(&self.vehicle, state).acceleration(self.actuators.applied(), &estimate);
+        self.observer.restart(state, &acceleration);
     }
 
     fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
         self.zeta = zeta;
         self.u_zeta = T::zero();
-        self.bump = Some(Vector3::zeros());
+        self.bump = Some(Command::zero());
         self.actuators.reset(applied);
         let acceleration = Model::at(&self.vehicle, state).acceleration(&applied, &Disturbance::none());
         self.observer.reset(state, &acceleration);
@@ -162,9 +205,9 @@ impl<T: Real> Sampler<T> {
     /// that the applied thrust gives.
     #[inline]
     pub(crate) fn hold(&mut self, command: &Command<T>, u_zeta: T, margins: &Margins<T>) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().torque - command.torque);
-        self.bump = Some(bump * self.fade);
-        let smooth = Command { thrust: command.thrust, torque: command.torque + bump };
+        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(command));
+        self.bump = Some(bump.times(self.fade));
+        let smooth = command.plus(&bump);
         let applied = self.limits.limit(&smooth);
         self.actuators.push(applied);
         self.zeta = propagate(&self.zeta, u_zeta, self.period);

@@ -4,6 +4,24 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::scalar::Real;
 
+/// A part of the state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Channel {
+    /// Payload position.
+    Position,
+    /// Payload velocity.
+    Velocity,
+    /// Rod direction.
+    Rod,
+    /// Rod rate.
+    RodRate,
+    /// Attitude.
+    Attitude,
+    /// Body rate.
+    BodyRate,
+}
+
 /// Configuration and velocity of payload, rod and UAV.
 ///
 /// **n3 points down, and the rod vector points from the UAV to the payload:** hanging straight down is `rod` = e3, and
@@ -96,6 +114,34 @@ impl<T: Real> State<T> {
             o.y,
             o.z,
         ]
+    }
+
+    /// `Ok` if every number is one and the law can be trusted with them: position within 100 km, velocity within 1 km/s, rod rate and body
+    /// rate within 100 rad/s, |q| and the attitude's columns within 1 % of 1, and those a right-handed frame. NaN is none of it.
+    #[inline]
+    pub fn check(&self) -> Result<(), Channel> {
+        let unit = |squared: T| squared >= T::lit(0.98) && squared <= T::lit(1.02);
+        let within = |v: &Vector3<T>, most: f64| v.dot(v) <= T::lit(most * most);
+        let b1: Vector3<T> = self.attitude.column(0).into();
+        let b2: Vector3<T> = self.attitude.column(1).into();
+        let b3: Vector3<T> = self.attitude.column(2).into();
+        // Three vectors of length one span a volume of one only at right angles.
+        let frame = unit(b1.dot(&b1)) && unit(b2.dot(&b2)) && unit(b3.dot(&b3)) && unit(b1.cross(&b2).dot(&b3));
+        if !within(&self.position, 1e5) {
+            Err(Channel::Position)
+        } else if !within(&self.velocity, 1e3) {
+            Err(Channel::Velocity)
+        } else if !unit(self.rod.dot(&self.rod)) {
+            Err(Channel::Rod)
+        } else if !within(&self.rod_rate, 1e2) {
+            Err(Channel::RodRate)
+        } else if !frame {
+            Err(Channel::Attitude)
+        } else if !within(&self.body_rate, 1e2) {
+            Err(Channel::BodyRate)
+        } else {
+            Ok(())
+        }
     }
 
     /// The same state in another scalar, rounded to nearest. Host-side use.

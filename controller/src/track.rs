@@ -119,6 +119,7 @@ pub fn law<T: Real>(
             lambda: lift.lambda[0],
             kappa: lift.kappa,
             path_det: T::one(),
+            reach: T::one(),
             cos_phi_squared: yaw.cos_phi_squared,
         },
     }

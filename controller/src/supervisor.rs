@@ -1,0 +1,402 @@
+//! The law, supervised: modes, envelope, faults, and a command for every input.
+//!
+//! ```text
+//!          arm              follow            path reached
+//!   OFF ────────▶ IDLE ───────────────▶ ENGAGE ──────────▶ FOLLOW
+//!    ▲              │ hold                │ ▲                 │
+//!    │              ▼                     ▼ │ follow, calm    │
+//!    │            HOLD ◀──────────────────┴─┴─────────────────┘  hold asked for; a margin beyond its limit;
+//!    │              │  ▲                                         an answer not finite; the payload lost
+//!    │         land │  │ hold asked for, or a good state again
+//!    │              ▼  │
+//!    ├─ landed ── LAND │           FAULT: no good state for longer than [`Policy::coast`], from any mode in flight;
+//!    └─ off, from anywhere         rotors cut, or sinking level, as [`Policy::lost`] says
+//! ```
+//!
+//! Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
+//! next good state is flown on.
+
+use crate::approach::ApproachLimits;
+use crate::compensator::Command;
+use crate::disturbance::Disturbance;
+use crate::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
+use crate::error::OutOfRange;
+use crate::follow::{Follower, Solution, Xi};
+use crate::hold::Hold;
+use crate::path::Path;
+use crate::sampler::Ahead;
+use crate::scalar::Real;
+use crate::state::{Channel, State};
+use nalgebra::Vector3;
+
+/// What the vehicle is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Mode {
+    /// Rotors off.
+    Off,
+    /// Armed, at least thrust.
+    Idle,
+    /// On the way to the path.
+    Engage,
+    /// On the path.
+    Follow,
+    /// At rest, or coming to it.
+    Hold,
+    /// Sinking at [`Policy::descent`].
+    Land,
+    /// No state to fly on.
+    Fault,
+}
+
+/// What the pilot wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Request {
+    /// Rotors off, at once.
+    Off,
+    /// Armed on the ground; in flight the same as [`Hold`](Self::Hold).
+    Idle,
+    /// Along the path.
+    Follow,
+    /// Stop where it is.
+    Hold,
+    /// Sink, and switch off on the ground.
+    Land,
+}
+
+/// Why the vehicle is not doing what was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Fault {
+    /// This part of the state is not a number, or out of any range.
+    State(Channel),
+    /// This margin is beyond its limit.
+    Margin(Margin),
+    /// The law's answer was not finite.
+    NotFinite,
+    /// No point of the path was found from here.
+    NoPath,
+    /// The payload is gone.
+    PayloadLost,
+}
+
+/// What to do without a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Lost {
+    /// Cut the rotors; only [`Request::Off`] leaves the fault.
+    Cut,
+    /// Sink with this share of the hover thrust (per cent) and no torque; a good state again leads to hold.
+    Sink(u8),
+}
+
+/// What is done when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Policy<T> {
+    /// How long the last command goes on without a good state, s.
+    pub coast: T,
+    /// What comes after that.
+    pub lost: Lost,
+    /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the vehicle has been calm.
+    pub resume: bool,
+    /// For how long it has to have been, s.
+    pub calm: T,
+    /// Speed of a landing, m/s.
+    pub descent: T,
+    /// Share of the payload's mass below which it counts as lost.
+    pub payload_lost: T,
+}
+
+impl<T: Real> Default for Policy<T> {
+    /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second; landing at 0.5 m/s; lost below 30 %.
+    fn default() -> Self {
+        Self {
+            coast: T::lit(0.1),
+            lost: Lost::Sink(90),
+            resume: true,
+            calm: T::one(),
+            descent: T::lit(0.5),
+            payload_lost: T::lit(0.3),
+        }
+    }
+}
+
+impl<T: Real> Policy<T> {
+    fn check(&self) -> Result<(), OutOfRange<T>> {
+        OutOfRange::check("coast", self.coast, 0.0, 10.0)?;
+        OutOfRange::check("calm", self.calm, 0.0, 100.0)?;
+        OutOfRange::check("descent", self.descent, 0.01, 10.0)?;
+        OutOfRange::check("payload_lost", self.payload_lost, -1.0, 0.95)?;
+        match self.lost {
+            Lost::Cut => Ok(()),
+            Lost::Sink(share) => OutOfRange::check("lost", T::lit(f64::from(share)), 0.0, 100.0),
+        }
+    }
+}
+
+/// What a step answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output<T> {
+    /// Finite and within the limits; nothing at all in [`Mode::Off`].
+    pub command: Command<T>,
+    /// The mode it was made in.
+    pub mode: Mode,
+    /// The last fault since a request changed.
+    pub fault: Option<Fault>,
+    /// A margin past its warning.
+    pub warning: Option<Margin>,
+    /// The law's own answer, where it was asked.
+    pub solution: Option<Solution<T, Xi<T>>>,
+}
+
+/// A path-following controller that answers every input.
+#[derive(Clone, Debug)]
+pub struct Supervisor<T, P> {
+    follower: Follower<T, P>,
+    envelope: Envelope<T>,
+    approach: ApproachLimits<T>,
+    policy: Policy<T>,
+    mode: Mode,
+    request: Request,
+    fault: Option<Fault>,
+    hold: Hold<T>,
+    /// Time without a good state, of calm in hold, and without payload, s.
+    blind: T,
+    calm: T,
+    unloaded: T,
+}
+
+impl<T: Real, P: Path<T>> Supervisor<T, P> {
+    /// Rotors off. An error names the parameter that is out of range.
+    pub fn new(
+        follower: Follower<T, P>,
+        envelope: &EnvelopeParams<T>,
+        approach: ApproachLimits<T>,
+        policy: Policy<T>,
+    ) -> Result<Self, OutOfRange<T>> {
+        let vehicle = *follower.vehicle();
+        approach.check(&vehicle)?;
+        policy.check()?;
+        Ok(Self {
+            follower,
+            envelope: Envelope::new(&vehicle, envelope)?,
+            approach,
+            policy,
+            mode: Mode::Off,
+            request: Request::Off,
+            fault: None,
+            hold: Hold::from(&vehicle, &State::at_rest(Vector3::zeros())),
+            blind: T::zero(),
+            calm: T::zero(),
+            unloaded: T::zero(),
+        })
+    }
+
+    /// The mode as of the last step.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// The law that is supervised.
+    pub fn follower(&self) -> &Follower<T, P> {
+        &self.follower
+    }
+
+    /// Takes over a flying vehicle, to which `applied` has been applied until now: from [`Mode::Off`] to [`Mode::Hold`].
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+        if state.check().is_ok() && applied.is_finite() {
+            let sampler = self.follower.sampler();
+            sampler.engage(state, sampler.limits().limit(&applied));
+            self.request = Request::Hold;
+            self.enter_hold(state, None);
+        }
+    }
+
+    /// The command for the coming hold. Call once every period, with the state sampled now and what the pilot wants.
+    #[inline]
+    pub fn step(&mut self, sampled: &State<T>, request: Request) -> Output<T> {
+        if request != self.request {
+            self.request = request;
+            self.fault = None;
+            self.calm = self.policy.calm;
+        }
+        if request == Request::Off {
+            self.mode = Mode::Off;
+        }
+        match sampled.check() {
+            Err(channel) => self.without_state(channel),
+            Ok(()) => {
+                if self.blind > T::zero() {
+                    self.blind = T::zero();
+                    self.follower.sampler().resume(sampled);
+                }
+                self.with_state(sampled)
+            }
+        }
+    }
+
+    /// A step on a good state.
+    #[inline]
+    fn with_state(&mut self, sampled: &State<T>) -> Output<T> {
+        self.change_mode(sampled);
+        match self.mode {
+            Mode::Off => self.grounded(sampled, Command::zero()),
+            Mode::Idle => {
+                let least = self.follower.sampler().limits().min_thrust.max(T::zero());
+                self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
+            }
+            Mode::Engage | Mode::Follow => self.following(sampled),
+            Mode::Hold | Mode::Land | Mode::Fault => self.holding(sampled, None),
+        }
+    }
+
+    /// The edges that requests and good states open.
+    fn change_mode(&mut self, sampled: &State<T>) {
+        match (self.mode, self.request) {
+            (Mode::Off, Request::Idle | Request::Follow | Request::Hold) => self.mode = Mode::Idle,
+            (Mode::Idle, Request::Follow) | (Mode::Hold, Request::Follow) if self.may_follow() => {
+                if self.follower.rejoin(sampled, &self.approach) {
+                    self.mode = Mode::Engage;
+                } else {
+                    self.enter_hold(sampled, Some(Fault::NoPath));
+                    self.calm = T::zero();
+                }
+            }
+            (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Land, Request::Hold)
+            | (Mode::Engage | Mode::Follow | Mode::Land, Request::Idle)
+            | (Mode::Land, Request::Follow) => self.enter_hold(sampled, None),
+            (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Hold, Request::Land) => {
+                self.enter_hold(sampled, None);
+                self.mode = Mode::Land;
+            }
+            (Mode::Fault, _) if self.policy.lost != Lost::Cut => {
+                let fault = self.fault;
+                self.enter_hold(sampled, fault);
+            }
+            (Mode::Engage, _) if !self.follower.approach().is_active() => self.mode = Mode::Follow,
+            _ => {}
+        }
+    }
+
+    fn may_follow(&self) -> bool {
+        self.fault != Some(Fault::PayloadLost)
+            && self.calm >= self.policy.calm
+            && (self.policy.resume || self.fault.is_none())
+    }
+
+    fn enter_hold(&mut self, sampled: &State<T>, fault: Option<Fault>) {
+        self.hold = Hold::from(self.follower.vehicle(), sampled);
+        self.follower.sampler().soften();
+        self.mode = Mode::Hold;
+        self.calm = T::zero();
+        self.fault = fault.or(self.fault);
+    }
+
+    /// The law's command, if its answer can be flown; hold's, if not.
+    #[inline]
+    fn following(&mut self, sampled: &State<T>) -> Output<T> {
+        let ahead = self.follower.sampler().ahead(sampled);
+        let solution = self.follower.evaluate(&ahead);
+        let standing = self.envelope.assess(&solution.margins, self.follower.approach().path_det());
+        let fault = if let Standing::Beyond(margin) = standing {
+            Some(Fault::Margin(margin))
+        } else if !(solution.command.is_finite() && solution.u_zeta.is_finite()) {
+            Some(Fault::NotFinite)
+        } else if self.payload_is_lost(&ahead, solution.margins.lambda) {
+            Some(Fault::PayloadLost)
+        } else {
+            None
+        };
+        if fault.is_some() {
+            self.enter_hold(sampled, fault);
+            return self.holding(sampled, Some(solution));
+        }
+        let command = self.follower.accept(&solution);
+        let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
+        Output { command, mode: self.mode, fault: self.fault, warning, solution: Some(solution) }
+    }
+
+    /// Hold's command. `solution` is the law's answer that led here: then the observers have seen `sampled` already.
+    fn holding(&mut self, sampled: &State<T>, solution: Option<Solution<T, Xi<T>>>) -> Output<T> {
+        let vehicle = *self.follower.vehicle();
+        let sampler = self.follower.sampler();
+        let state = if solution.is_some() { *sampled } else { sampler.ahead(sampled).state };
+        let period = sampler.period();
+        let params = vehicle.params();
+        let implied = sampler.implied_payload_mass(sampled);
+        let mass = params.uav_mass + implied.clamp(T::zero(), params.payload_mass * T::lit(4.0));
+        let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
+        let wanted = self.hold.step(&vehicle, &state, mass, descent, period);
+        if self.mode == Mode::Land && self.hold.left_above(&vehicle, sampled) > T::lit(GROUNDED) {
+            self.mode = Mode::Off;
+            self.request = Request::Off;
+        }
+        let (speed, swing) = (sampled.velocity, sampled.rod_rate);
+        let is_calm = speed.dot(&speed) < T::lit(CALM_SPEED * CALM_SPEED)
+            && swing.dot(&swing) < T::lit(CALM_SWING * CALM_SWING)
+            && sampled.attitude.m33 > T::lit(CALM_TILT);
+        self.calm = if is_calm { self.calm + period } else { T::zero() };
+        let command = self.follower.sampler().hold(&wanted, T::zero(), &Margins::at_hover());
+        Output { command, mode: self.mode, fault: self.fault, warning: None, solution }
+    }
+
+    /// A command that needs no law.
+    fn grounded(&mut self, sampled: &State<T>, command: Command<T>) -> Output<T> {
+        self.follower.sampler().engage(sampled, command);
+        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
+    }
+
+    /// A step without a good state.
+    fn without_state(&mut self, channel: Channel) -> Output<T> {
+        self.fault = Some(Fault::State(channel));
+        let hover = self.follower.vehicle().hover_thrust();
+        let sampler = self.follower.sampler();
+        self.blind += sampler.period();
+        let least = sampler.limits().min_thrust.max(T::zero());
+        let command = match self.mode {
+            Mode::Off => Command::zero(),
+            Mode::Idle => Command { thrust: least, torque: Vector3::zeros() },
+            Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => {
+                sampler.coast()
+            }
+            _ => {
+                self.mode = Mode::Fault;
+                match self.policy.lost {
+                    Lost::Cut => Command::zero(),
+                    Lost::Sink(share) => {
+                        let thrust = hover * T::lit(f64::from(share) * 0.01);
+                        sampler.send(&Command { thrust, torque: Vector3::zeros() })
+                    }
+                }
+            }
+        };
+        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
+    }
+
+    /// Whether the payload's mass has been implied to be next to nothing for a while: M = M₀ λ/(λ + d·q), both sides negative.
+    #[inline]
+    fn payload_is_lost(&mut self, ahead: &Ahead<T>, lambda: T) -> bool {
+        let vehicle = self.follower.vehicle();
+        let params = vehicle.params();
+        let least = params.uav_mass + params.payload_mass * self.policy.payload_lost;
+        let along = ahead.disturbance.payload.dot(&ahead.state.rod);
+        let lost = vehicle.total_mass() * lambda > least * (lambda + along);
+        self.unloaded = if lost { self.unloaded + self.follower.sampler().period() } else { T::zero() };
+        self.unloaded > T::lit(UNLOADED)
+    }
+
+    /// What is known of disturbances.
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        self.follower.disturbance()
+    }
+}
+
+/// How long the payload has to seem lost, s.
+const UNLOADED: f64 = 0.2;
+/// How far above its target the ground must keep a landing vehicle, m.
+const GROUNDED: f64 = 1.5;
+/// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt.
+const CALM_SPEED: f64 = 1.0;
+const CALM_SWING: f64 = 0.3;
+const CALM_TILT: f64 = 0.95;
