@@ -401,6 +401,7 @@ impl Autopilot {
             lambda: margins.lambda,
             kappa: margins.kappa,
             path_det: margins.path_det,
+            reach: margins.reach,
             cos_phi_squared: margins.cos_phi_squared,
         })
     }

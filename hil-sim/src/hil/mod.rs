@@ -7,6 +7,7 @@
 //! answers the same number with the same command. So neither a slow host, nor a noisy line, nor a line that was cut and is back
 //! changes any result.
 
+mod command;
 mod emulator;
 mod error;
 mod setup;
@@ -14,9 +15,10 @@ mod soft;
 mod target;
 mod wire;
 
+pub use command::{Arguments, Flown, LinkReport, fly_all, table};
 pub use emulator::Emulator;
 pub use error::HilError;
 pub use setup::parameters;
 pub use soft::serve;
 pub use target::{Options, Pace, Statistics, Target};
-pub use wire::{Endpoint, Wire};
+pub use wire::{Endpoint, Listener, Wire};

@@ -498,6 +498,7 @@ impl Target {
                 lambda: data.lambda.into(),
                 kappa: data.kappa.into(),
                 path_det: data.path_det.into(),
+                reach: data.reach.into(),
                 cos_phi_squared: data.cos_phi_squared.into(),
             };
         }
@@ -522,7 +523,7 @@ impl Answers for Target {
 /// Where no telemetry came.
 fn no_margins() -> Margins<f64> {
     let none = f64::NAN;
-    Margins { q3: none, q_b3: none, lambda: none, kappa: none, path_det: none, cos_phi_squared: none }
+    Margins { q3: none, q_b3: none, lambda: none, kappa: none, path_det: none, reach: none, cos_phi_squared: none }
 }
 
 fn named_value(message: &MavMessage, name: &str) -> Option<f32> {

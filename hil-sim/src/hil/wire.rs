@@ -2,9 +2,9 @@
 
 use std::fmt;
 use std::io::{self, Read, Write};
-use std::net::{TcpStream, ToSocketAddrs};
+use std::net::{TcpListener, TcpStream, ToSocketAddrs};
 #[cfg(unix)]
-use std::os::unix::net::UnixStream;
+use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::Duration;
@@ -116,5 +116,52 @@ impl Endpoint {
                 Ok(Box::new(connect().map_err(refused)?))
             }
         }
+    }
+}
+
+/// Where a target of this program waits to be connected to.
+pub enum Listener {
+    /// A Unix socket.
+    #[cfg(unix)]
+    Unix(UnixListener),
+    /// A TCP socket.
+    Tcp(TcpListener),
+}
+
+impl Listener {
+    /// Listens at a socket.
+    ///
+    /// # Errors
+    /// [`HilError::Connect`] with the system's reason; a serial port is nowhere to listen.
+    pub fn open(endpoint: &Endpoint) -> Result<Self, HilError> {
+        let refused = |source| HilError::Connect { endpoint: endpoint.clone(), source };
+        match endpoint {
+            #[cfg(unix)]
+            Endpoint::Unix(path) => UnixListener::bind(path).map(Self::Unix).map_err(refused),
+            Endpoint::Tcp(address) => TcpListener::bind(address).map(Self::Tcp).map_err(refused),
+            _ => Err(refused(io::ErrorKind::Unsupported.into())),
+        }
+    }
+
+    /// Waits for the next connection.
+    ///
+    /// # Errors
+    /// The system's.
+    pub fn accept(&self) -> io::Result<Box<dyn Wire>> {
+        Ok(match self {
+            #[cfg(unix)]
+            Self::Unix(listener) => Box::new(listener.accept()?.0),
+            Self::Tcp(listener) => {
+                let stream = listener.accept()?.0;
+                stream.set_nodelay(true)?;
+                Box::new(stream)
+            }
+        })
+    }
+}
+
+impl Wire for Box<dyn Wire> {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.as_mut().set_patience(patience)
     }
 }

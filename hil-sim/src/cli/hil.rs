@@ -1,0 +1,59 @@
+//! `hil` and `target`: the controller at the other end of a line, and this program at that end.
+
+use hil_sim::hil::{self, Arguments, Flown};
+use hil_sim::reference::Reference;
+use hil_sim::report;
+use std::fs;
+use std::io::{self, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{Common, Ended, fly};
+
+pub const EXAMPLES: &str = "Examples:
+  hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
+  hil-sim hil fig3a --port /dev/ttyUSB0 --real-time    by the board's own clock
+  hil-sim hil fig3a --connect tcp:192.168.1.7:5760
+  hil-sim hil fig3a --emulate firmware/target/thumbv7em-none-eabihf/release/firmware";
+
+pub const TARGET_EXAMPLES: &str = "Examples:
+  hil-sim target --listen tcp:127.0.0.1:5760
+  hil-sim hil fig3a --connect tcp:127.0.0.1:5760       in another terminal";
+
+/// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
+pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
+    let scenarios = if arguments.files.is_empty() { fly::figures()? } else { fly::load(&arguments.files)? };
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler = Arc::clone(&stop);
+    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+
+    let planned = scenarios.len();
+    let bar = fly::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
+    let flown = hil::fly_all(arguments, scenarios, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
+    bar.finish_and_clear();
+    let Flown { outcomes, links, failure } = flown;
+
+    let reference = Reference::builtin();
+    let page = report::write(common.folder(), &outcomes, &reference)?;
+    fs::write(common.folder().join("hil.json"), serde_json::to_vec_pretty(&links)?)?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        writeln!(out, "{}\n{}", report::table(&outcomes, &reference), hil::table(&links))?;
+        writeln!(out, "Report: {}", page.display())?;
+    }
+    match failure {
+        Some(failure) => Err(failure.into()),
+        None => Ok(fly::verdict(&outcomes, planned)),
+    }
+}
+
+/// Is a target, until the line's other end closes it.
+pub fn target(common: &Common, listen: &str) -> Ended {
+    let listener = hil::Listener::open(&listen.parse()?)?;
+    if !common.quiet {
+        eprintln!("hil-sim: a target at {listen}");
+    }
+    loop {
+        hil::serve(listener.accept()?)?;
+    }
+}

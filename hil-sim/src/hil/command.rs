@@ -1,0 +1,226 @@
+//! `hil-sim hil`: its arguments, its flights, and what it has to say about the link.
+
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use comfy_table::Table;
+use serde::Serialize;
+
+use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target};
+use crate::batch::Outcome;
+use crate::run::{self, Arithmetic, End};
+use crate::scenario::Scenario;
+
+/// Where the target is and how to speak with it.
+#[derive(Args, Clone, Debug)]
+#[group(id = "where", required = true, multiple = false, args = ["port", "connect", "emulate"])]
+pub struct Arguments {
+    /// Scenario files, or names of built-in scenarios; none for the paper's figures.
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Serial port of the target.
+    #[arg(long)]
+    pub port: Option<String>,
+    /// Its baud rate.
+    #[arg(long, default_value_t = 921_600, requires = "port")]
+    pub baud: u32,
+    /// Socket of the target: unix:PATH or tcp:HOST:PORT.
+    #[arg(long, value_name = "ENDPOINT")]
+    pub connect: Option<String>,
+    /// Image to start in QEMU.
+    #[arg(long, value_name = "IMAGE")]
+    pub emulate: Option<PathBuf>,
+    /// QEMU's machine for it: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386 (Cortex-M4F), mps2-an500 (Cortex-M7).
+    #[arg(long, default_value = "netduinoplus2", requires = "emulate")]
+    pub machine: String,
+    /// Let QEMU count instructions: cycle counts are then exact and repeatable, and flights slower.
+    #[arg(long, requires = "emulate")]
+    pub count: bool,
+    /// Fly by the target's own timer and the clock on the wall, not in lockstep.
+    #[arg(long)]
+    pub real_time: bool,
+    /// Leave ξ, ν and margins out of the link: for slow lines.
+    #[arg(long)]
+    pub no_telemetry: bool,
+    /// Seconds without an answer after which the target is lost.
+    #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = patience)]
+    pub patience: f64,
+}
+
+fn patience(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
+        _ => Err("0.1 to 3600".to_owned()),
+    }
+}
+
+/// What the link did in one flight.
+#[derive(Clone, Debug, Serialize)]
+pub struct LinkReport {
+    /// The scenario.
+    pub scenario: String,
+    /// Control steps the target answered.
+    pub steps: usize,
+    /// Of them in a second of wall-clock time.
+    pub steps_per_s: f64,
+    /// From a state's sending to its command's arrival, median, µs.
+    pub latency_median_us: f64,
+    /// 99th percentile, µs.
+    pub latency_p99_us: f64,
+    /// Longest, µs.
+    pub latency_max_us: f64,
+    /// Counts of the target's cycle counter in a control step, median.
+    pub cycles_median: f64,
+    /// Most of them.
+    pub cycles_max: u32,
+    /// Instructions in a control step, where an emulator counts them: median.
+    pub instructions_median: Option<f64>,
+    /// Most of them.
+    pub instructions_max: Option<f64>,
+    /// Frames sent again.
+    pub repeats: u64,
+    /// Frames that could not be used.
+    pub bad_frames: u64,
+    /// Times the line came back.
+    pub reconnections: u64,
+    /// Real time: periods without a command.
+    pub late: u64,
+    /// Bits of `LOAD_FAULT` in any answer.
+    pub faults: u16,
+}
+
+/// Flights and what the link did in each.
+#[derive(Debug)]
+pub struct Flown {
+    /// As of flights without a target.
+    pub outcomes: Vec<Outcome>,
+    /// One each.
+    pub links: Vec<LinkReport>,
+    /// Why the last flight ended early.
+    pub failure: Option<HilError>,
+}
+
+/// Connects and flies `scenarios` one after the other.
+///
+/// # Errors
+/// The target can't be reached, or can't fly a scenario. A target that is lost in flight ends the flights; those before are kept.
+pub fn fly_all(
+    arguments: &Arguments,
+    scenarios: Vec<Scenario>,
+    stop: &AtomicBool,
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Flown, HilError> {
+    let options = Options {
+        pace: if arguments.real_time { Pace::RealTime } else { Pace::Lockstep },
+        patience: Duration::from_secs_f64(arguments.patience),
+        telemetry: !arguments.no_telemetry,
+        ..Options::default()
+    };
+    let mut target = match (&arguments.port, &arguments.connect, &arguments.emulate) {
+        (Some(port), ..) => {
+            Target::connect(Endpoint::Serial { port: port.clone(), baud: arguments.baud }, None, options)?
+        }
+        (_, Some(endpoint), _) => Target::connect(endpoint.parse()?, None, options)?,
+        (.., Some(image)) => Target::emulated(Emulator::start(&arguments.machine, image, arguments.count)?, options)?,
+        _ => return Err(HilError::Endpoint(String::new())),
+    };
+    let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
+    for scenario in scenarios {
+        target.prepare(&scenario)?;
+        let begun = Instant::now();
+        let flight = run::fly_on(
+            &scenario,
+            &mut target,
+            run::Options { arithmetic: Arithmetic::F32, twin: options.telemetry, stop, progress },
+        )
+        .map_err(|error| HilError::Unsupported(error.to_string()))?;
+        let elapsed_s = begun.elapsed().as_secs_f64();
+        let end = flight.end;
+        if end == End::Interrupted {
+            let _ = target.disarm();
+            break;
+        }
+        let steps = target.statistics().cycles.len();
+        flown.links.push(link_report(&scenario.name, target.statistics(), elapsed_s, target.counts_per_instruction()));
+        let times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
+        flown.outcomes.push(Outcome { scenario, flight, times_real_time });
+        if let End::Unanswered(_) = end {
+            flown.failure = target.take_failure();
+            return Ok(flown);
+        }
+        target.disarm()?;
+    }
+    Ok(flown)
+}
+
+fn link_report(name: &str, statistics: &Statistics, elapsed_s: f64, counts: Option<f64>) -> LinkReport {
+    let mut cycles = statistics.cycles.clone();
+    cycles.sort_unstable();
+    let median = cycles.get(cycles.len() / 2).copied().unwrap_or_default();
+    let most = cycles.last().copied().unwrap_or_default();
+    let instructions = |cycles: u32| counts.map(|counts| f64::from(cycles) / counts);
+    LinkReport {
+        scenario: name.to_owned(),
+        steps: cycles.len(),
+        steps_per_s: cycles.len() as f64 / elapsed_s,
+        latency_median_us: 1e6 * statistics.latency_s(0.5),
+        latency_p99_us: 1e6 * statistics.latency_s(0.99),
+        latency_max_us: 1e6 * statistics.latency_s(1.0),
+        cycles_median: f64::from(median),
+        cycles_max: most,
+        instructions_median: instructions(median),
+        instructions_max: instructions(most),
+        repeats: statistics.repeats,
+        bad_frames: statistics.bad_frames,
+        reconnections: statistics.reconnections,
+        late: statistics.late,
+        faults: statistics.faults,
+    }
+}
+
+/// The links as a table for the terminal.
+#[must_use]
+pub fn table(links: &[LinkReport]) -> Table {
+    let mut table = Table::new();
+    table.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header([
+        "flight",
+        "steps",
+        "steps/s",
+        "latency µs\nmedian",
+        "\n99 %",
+        "\nmax",
+        "cycles\nmedian",
+        "\nmax",
+        "instructions\nmedian",
+        "\nmax",
+        "sent\nagain",
+        "bad\nframes",
+        "line\nmended",
+        "late",
+        "faults",
+    ]);
+    let or_none = |number: Option<f64>| number.map_or_else(|| "–".to_owned(), |number| format!("{number:.0}"));
+    for link in links {
+        table.add_row([
+            link.scenario.clone(),
+            link.steps.to_string(),
+            format!("{:.0}", link.steps_per_s),
+            format!("{:.0}", link.latency_median_us),
+            format!("{:.0}", link.latency_p99_us),
+            format!("{:.0}", link.latency_max_us),
+            format!("{:.0}", link.cycles_median),
+            link.cycles_max.to_string(),
+            or_none(link.instructions_median),
+            or_none(link.instructions_max),
+            link.repeats.to_string(),
+            link.bad_frames.to_string(),
+            link.reconnections.to_string(),
+            link.late.to_string(),
+            format!("{:#x}", link.faults),
+        ]);
+    }
+    table
+}
