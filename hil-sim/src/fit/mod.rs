@@ -1,10 +1,11 @@
 //! A closed Fourier curve through waypoints, in the least-squares sense.
 //!
 //! c(σ) = a0 + Σ (A_k cos kσ + B_k sin kσ) with as few harmonics as keep every waypoint within the tolerance. For given
-//! parameters σᵢ of the waypoints the coefficients are a linear least-squares problem, each waypoint weighted by the stretch of
-//! the loop it stands for; for given coefficients the best σᵢ are those of the nearest points. The two are solved in turn,
-//! beginning from the square roots of the chords (E. T. Y. Lee, *Choosing nodes in parametric curve interpolation*, 1989).
+//! parameters σᵢ of the waypoints, at first by the square roots of the chords (E. T. Y. Lee, *Choosing nodes in parametric curve
+//! interpolation*, 1989), the coefficients are a linear least-squares problem, each waypoint weighted by the stretch of the loop
+//! it stands for. From there [orthogonal distance regression](orthogonal) minimizes the distances from the waypoints to their nearest points.
 
+mod orthogonal;
 mod output;
 mod points;
 mod reference;
@@ -23,11 +24,6 @@ use std::f64::consts::TAU;
 
 /// Most harmonics of a path that can be flown.
 pub const MAX_HARMONICS: usize = 16;
-/// Rounds of coefficients and parameters in turn: the change falls geometrically, and below the tolerance long before.
-const ROUNDS: usize = 200;
-/// Rounds end when no parameter moves by more than this, rad.
-const SETTLED: f64 = 1e-10;
-
 /// A fitted curve and how good it is.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -129,7 +125,7 @@ fn with_harmonics(
     let weights: Vec<f64> =
         (0..points.len()).map(|i| 0.5 * (chords[i] + chords[(i + points.len() - 1) % points.len()])).collect();
     let total: f64 = chords.iter().map(|chord| chord.sqrt()).sum();
-    let mut sigma: Vec<f64> = chords
+    let sigma: Vec<f64> = chords
         .iter()
         .scan(0.0, |passed, chord| {
             let here = TAU * *passed / total;
@@ -137,34 +133,8 @@ fn with_harmonics(
             Some(here)
         })
         .collect();
-    let mut harmonics = coefficients(points, &weights, &sigma, count)?;
-    for _ in 0..ROUNDS {
-        let mut moved = 0.0_f64;
-        for (point, sigma) in points.iter().zip(&mut sigma) {
-            let step = towards_foot(&harmonics, point, *sigma, count);
-            *sigma += step;
-            moved = moved.max(step.abs());
-        }
-        harmonics = coefficients(points, &weights, &sigma, count)?;
-        if moved < SETTLED {
-            break;
-        }
-    }
-    for (point, sigma) in points.iter().zip(&mut sigma) {
-        *sigma += towards_foot(&harmonics, point, *sigma, count);
-    }
-    Ok((harmonics, sigma))
-}
-
-/// One Newton step towards the parameter of the nearest point, rad.
-fn towards_foot(harmonics: &Harmonics<f64, MAX_HARMONICS>, point: &Vector3<f64>, sigma: f64, count: usize) -> f64 {
-    let [offset, first, second] = harmonics.derivatives(sigma);
-    let error = point - Vector3::from(harmonics.center) - offset;
-    let speed_squared = first.dot(&first);
-    // Downhill also beyond the centre of curvature, and within the shortest harmonic's scale.
-    let divisor = (speed_squared - error.dot(&second)).max(0.1 * speed_squared);
-    let limit = 0.5 / count as f64;
-    (error.dot(&first) / divisor).clamp(-limit, limit)
+    let harmonics = coefficients(points, &weights, &sigma, count)?;
+    Ok(orthogonal::minimize(points, &weights, harmonics, sigma, count))
 }
 
 /// The weighted least-squares coefficients for given parameters.
@@ -175,8 +145,7 @@ fn coefficients(
     count: usize,
 ) -> Result<Harmonics<f64, MAX_HARMONICS>, FitError> {
     let design = DMatrix::from_fn(points.len(), 2 * count + 1, |row, column| {
-        let (sin, cos) = (column.div_ceil(2) as f64 * sigma[row]).sin_cos();
-        weights[row].sqrt() * if column % 2 == 1 { sin } else { cos }
+        weights[row].sqrt() * orthogonal::basis(column, sigma[row])
     });
     let decomposition = design.svd(true, true);
     let mut harmonics = Harmonics {

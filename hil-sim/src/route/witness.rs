@@ -23,7 +23,6 @@ impl WitnessPath for PathSpec {
                 [(x / *a).powi(n) + (y / *b).powi(n) - 1.0, z - *c0 - x * *c1]
             }
             CurveSpec::Tilted { center, normal, major, a, b } => {
-                let unit = |v: [f64; 3]| scale(v, 1.0 / dot(v, v).sqrt());
                 let n = unit(*normal);
                 let e2 = unit(cross(n, *major));
                 let e1 = cross(e2, n);
@@ -63,42 +62,61 @@ impl WitnessPath for PathSpec {
             _ => 1.0,
         }
     }
+
+    fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
+        if let CurveSpec::Fourier(harmonics) = &self.curve {
+            // ρ is the tangent at the nearest point; ∇h1 × ∇h2 turns from it where the normals twist.
+            let [_, first, _] = curve(harmonics, foot(harmonics, p));
+            return unit(first);
+        }
+        let [h1, h2] = self.surfaces(std::array::from_fn(|axis| Dual::<S, 3>::variable(p[axis], axis)));
+        scale(unit(cross(h1.parts, h2.parts)), S::constant(self.direction()))
+    }
+}
+
+/// v/|v|.
+fn unit<S: Scalar>(v: [S; 3]) -> [S; 3] {
+    scale(v, S::constant(1.0) / dot(v, v).sqrt())
 }
 
 impl PathSpec {
-    /// |dρ/ds|² along ρ, of the curve of constant (h1, h2) through `p`.
+    /// |dρ/ds|² along ρ, of the curve of constant (h1, h2) through `p`; of a Fourier curve itself, at the point nearest to `p`.
     fn curvature_squared<S: Scalar>(&self, p: [S; 3]) -> S {
+        if let CurveSpec::Fourier(harmonics) = &self.curve {
+            let [_, first, second] = curve(harmonics, foot(harmonics, p));
+            let (bend, square) = (cross(first, second), dot(first, first));
+            return dot(bend, bend) / (square * square * square);
+        }
         let tangent = self.tangent(p);
         // ρ carried along itself.
         let moving: [Dual<S, 1>; 3] = std::array::from_fn(|axis| Dual { value: p[axis], parts: [tangent[axis]] });
         let bend = self.tangent(moving).map(|component| component.parts[0]);
         dot(bend, bend)
     }
-
-    fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
-        let [h1, h2] = self.surfaces(std::array::from_fn(|axis| Dual::<S, 3>::variable(p[axis], axis)));
-        let normal = cross(h1.parts, h2.parts);
-        scale(normal, S::constant(1.0) / dot(normal, normal).sqrt())
-    }
 }
 
 /// r·n1 and r·n2 with r = p − c(σ) from the nearest point, n1 the reference direction less its part along the tangent, and
 /// n2 = t × n1.
 fn normal_coordinates<S: Scalar, const K: usize>(harmonics: &Harmonics<f64, K>, p: [S; 3]) -> [S; 2] {
+    let [c, first, _] = curve(harmonics, foot(harmonics, p));
+    let r: [S; 3] = std::array::from_fn(|axis| p[axis] - c[axis]);
+    let t = unit(first);
+    let e = harmonics.reference.map(S::constant);
+    let along = dot(e, t);
+    let across: [S; 3] = std::array::from_fn(|axis| e[axis] - along * t[axis]);
+    let n1 = unit(across);
+    [dot(r, n1), dot(r, cross(t, n1))]
+}
+
+/// σ of the nearest point, with all its derivatives.
+fn foot<S: Scalar, const K: usize>(harmonics: &Harmonics<f64, K>, p: [S; 3]) -> S {
     let mut sigma = S::constant(nearest(harmonics, p.map(|component| component.value())));
     for _ in 0..DOUBLINGS {
         let [c, first, second] = curve(harmonics, sigma);
         let r: [S; 3] = std::array::from_fn(|axis| p[axis] - c[axis]);
         sigma = sigma + dot(r, first) / (dot(first, first) - dot(r, second));
     }
-    let [c, first, _] = curve(harmonics, sigma);
-    let r: [S; 3] = std::array::from_fn(|axis| p[axis] - c[axis]);
-    let t = scale(first, S::constant(1.0) / dot(first, first).sqrt());
-    let e = harmonics.reference.map(S::constant);
-    let along = dot(e, t);
-    let across: [S; 3] = std::array::from_fn(|axis| e[axis] - along * t[axis]);
-    let n1 = scale(across, S::constant(1.0) / dot(across, across).sqrt());
-    [dot(r, n1), dot(r, cross(t, n1))]
+    sigma
 }
 
 /// c(σ), c′(σ), c″(σ), term by term.

@@ -17,15 +17,21 @@ pub trait WitnessPath {
     fn direction(&self) -> f64 {
         1.0
     }
+
+    /// The unit tangent at `p`: that of (3), unless the path states another off the curve.
+    fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
+        let [h1, h2] = self.surfaces(std::array::from_fn(|axis| Dual::<S, 3>::variable(p[axis], axis)));
+        let normal = cross(h1.parts, h2.parts);
+        let length = dot(normal, normal).sqrt();
+        scale(normal, S::constant(self.direction()) / length)
+    }
 }
 
 /// The outputs (4): h1, h2, ρ·v − v_d, ψ − ψ_d, the last not wrapped.
 pub fn outputs<S: Scalar, P: WitnessPath>(path: &P, p: [S; 3], v: [S; 3], psi: S) -> [S; 4] {
-    let [h1, h2] = path.surfaces(std::array::from_fn(|axis| Dual::<S, 3>::variable(p[axis], axis)));
-    let normal = cross(h1.parts, h2.parts);
-    let length = dot(normal, normal).sqrt();
-    let tangent = scale(normal, S::constant(path.direction()) / length);
-    [h1.value, h2.value, dot(tangent, v) - path.speed(p), psi - path.yaw(p, tangent)]
+    let [h1, h2] = path.surfaces(p);
+    let tangent = path.tangent(p);
+    [h1, h2, dot(tangent, v) - path.speed(p), psi - path.yaw(p, tangent)]
 }
 
 /// The horizontal circle of (16), flown along the tangent printed there, (−p2, p1, 0)/r, with ψ_d = 0.
