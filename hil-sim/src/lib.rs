@@ -2,10 +2,12 @@
 
 pub mod batch;
 pub mod check;
+pub mod compare;
 pub mod course;
 pub mod deviation;
 pub mod eval;
 pub mod fit;
+pub mod flight;
 pub mod formula;
 pub mod hil;
 pub mod input;

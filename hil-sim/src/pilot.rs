@@ -1,7 +1,10 @@
 //! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
 
 use controller::envelope::Margins;
-use controller::{Command, Follower, Real, Sampling, SetupError, State, Tracker, Vehicle, VehicleParams};
+use controller::{
+    ActuatorLimits, Command, Disturbance, Follower, ObserverParams, Real, Sampling, SetupError, State, Tracker,
+    Vehicle, VehicleParams,
+};
 
 use crate::course::{ReferenceSpec, Route};
 use crate::plant::Input;
@@ -71,6 +74,40 @@ pub fn cast_track_gains<T: Real>(gains: &controller::TrackGains<f64>) -> control
     controller::TrackGains { position: gains.position.map(|row| row.map(T::lit)), yaw: gains.yaw.map(T::lit) }
 }
 
+/// Timing in another scalar.
+#[must_use]
+pub fn cast_sampling<T: Real>(sampling: &Sampling<f64>) -> Sampling<T> {
+    Sampling {
+        period: T::lit(sampling.period),
+        latency: T::lit(sampling.latency),
+        rotor_lag: T::lit(sampling.rotor_lag),
+        look_ahead: sampling.look_ahead,
+    }
+}
+
+/// Observer parameters in another scalar.
+#[must_use]
+pub fn cast_observer<T: Real>(params: &ObserverParams<f64>) -> ObserverParams<T> {
+    ObserverParams {
+        payload_bandwidth: T::lit(params.payload_bandwidth),
+        rod_bandwidth: T::lit(params.rod_bandwidth),
+        torque_bandwidth: T::lit(params.torque_bandwidth),
+        payload_bound: T::lit(params.payload_bound),
+        rod_bound: T::lit(params.rod_bound),
+        torque_bound: T::lit(params.torque_bound),
+    }
+}
+
+/// Limits in another scalar.
+#[must_use]
+pub fn cast_limits<T: Real>(limits: &ActuatorLimits<f64>) -> ActuatorLimits<T> {
+    ActuatorLimits {
+        min_thrust: T::lit(limits.min_thrust),
+        max_thrust: T::lit(limits.max_thrust),
+        max_torque: limits.max_torque.map(T::lit),
+    }
+}
+
 impl<T: Real> Pilot<T> {
     /// The controller that `spec` describes, at hover.
     ///
@@ -78,15 +115,37 @@ impl<T: Real> Pilot<T> {
     /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains unstable.
     pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
         let vehicle = Vehicle::new(cast(&spec.vehicle))?;
-        let sampling = Sampling { look_ahead: spec.look_ahead, ..Sampling::every(T::lit(1.0 / spec.rate_hz)) };
+        let sampling = cast_sampling(&spec.sampling());
+        let (observer, limits) = (cast_observer(&spec.observer), cast_limits(&spec.limits));
         Ok(match &spec.law {
             Law::Follow { path, gains } => {
-                Self::Follow(Box::new(Follower::new(vehicle, path.build()?, cast_gains(gains), sampling)?))
+                let follower = Follower::new(vehicle, path.build()?, cast_gains(gains), sampling)?;
+                Self::Follow(Box::new(follower.with_observer(&observer)?.with_limits(limits)?))
             }
             Law::Track { reference, gains } => {
-                Self::Track(Box::new(Tracker::new(vehicle, cast_track_gains(gains), sampling)?), *reference)
+                let tracker = Tracker::new(vehicle, cast_track_gains(gains), sampling)?;
+                Self::Track(Box::new(tracker.with_observer(&observer)?.with_limits(limits)?), *reference)
             }
         })
+    }
+
+    /// Takes over from whatever applied `applied` until now, without a bump in thrust.
+    pub fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        let applied = Command { thrust: T::lit(applied.thrust), torque: applied.torque.map(T::lit) };
+        match self {
+            Self::Follow(follower) => follower.engage(&state.cast(), applied),
+            Self::Track(tracker, _) => tracker.engage(&state.cast(), applied),
+        }
+    }
+
+    /// The disturbances found up to the last sample.
+    #[must_use]
+    pub fn disturbance(&self) -> Disturbance<f64> {
+        let Disturbance { payload, rod, torque } = match self {
+            Self::Follow(follower) => follower.disturbance(),
+            Self::Track(tracker, _) => tracker.disturbance(),
+        };
+        Disturbance { payload: payload.map(T::to_f64), rod: rod.map(T::to_f64), torque: torque.map(T::to_f64) }
     }
 
     /// Starts from a stated ζ, with integrals at zero.
@@ -160,6 +219,7 @@ pub fn margins_f64<T: Real>(margins: &Margins<T>) -> Margins<f64> {
         lambda: margins.lambda.to_f64(),
         kappa: margins.kappa.to_f64(),
         path_det: margins.path_det.to_f64(),
+        reach: margins.reach.to_f64(),
         cos_phi_squared: margins.cos_phi_squared.to_f64(),
     }
 }

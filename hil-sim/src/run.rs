@@ -1,19 +1,19 @@
-//! A flight: the controller at its rate, the plant between samples, and an f64 twin that measures rounding.
+//! A flight: the controller at its rate, the [world](crate::world) between samples, and an f64 twin that measures rounding.
 //!
 //! The pilot sees the state at each sample; its thrust and torque are held until the next. Beside an f32 pilot an f64
 //! twin, the same source in another scalar with its own ζ and integrals, is asked at the same states; what it answers
 //! moves nothing.
 
-use controller::{SetupError, State};
+use controller::{Command, SetupError, State, Vector3};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::deviation::{Deviation, Deviations};
-use crate::integrate::rk4;
 use crate::metrics::{Metrics, Results};
 use crate::pilot::{Answers, Decision, Pilot};
-use crate::plant::{Input, derivative, index};
+use crate::plant::{Input, index};
 use crate::scenario::Scenario;
+use crate::world::{Seed, World};
 
 /// The scalar that the pilot computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,6 +133,10 @@ fn fly_with<A: Answers>(
         None => (u64::MAX, u64::MAX),
     };
 
+    let hover =
+        Command { thrust: scenario.vehicle.total_mass() * scenario.vehicle.gravity, torque: Vector3::zeros() };
+    let seed = Seed { batch: scenario.seed, run: 0 };
+    let mut world = World::new(&scenario.world(), &State::from_paper(&scenario.initial), hover, seed);
     let mut x = scenario.initial;
     let mut metrics = Metrics::new(scenario);
     let mut deviations = Deviations::new(&scenario.controller);
@@ -150,15 +154,18 @@ fn fly_with<A: Answers>(
             }
         }
         if step == stopped_at {
-            stop_vehicle(&mut x);
+            world.stop(x[index::PSI]);
+            x = world.body().state().to_paper();
         }
         if step == released_at {
             start = Some([0.0; 4]);
         }
         let held = (stopped_at..released_at).contains(&step);
         let mut sample = Sample { t_s, x, decision: None };
-        if !held {
-            let state = State::from_paper(&x);
+        if held {
+            world.wait();
+        } else {
+            let state = world.read();
             if let Some(zeta) = start.take() {
                 pilot.start(&state, zeta);
                 if let Some(twin) = &mut twin {
@@ -173,20 +180,16 @@ fn fly_with<A: Answers>(
             if let Some(twin) = &mut twin {
                 deviations.push(&decision, &twin.step(&state, t_s));
             }
-            x = rk4(
-                |_, x| derivative(&scenario.vehicle, x, &decision.input),
-                t_s,
-                &x,
-                period,
-                scenario.substeps,
-            );
+            let Input { thrust, torque } = decision.input;
+            world.advance(&Command { thrust, torque: torque.into() });
+            x = world.body().state().to_paper();
         }
         metrics.push(&sample, period);
         if step % log_every == 0 {
             log.push(sample);
         }
         step += 1;
-        if !(x.iter().all(|value| value.is_finite()) && sample.decision.is_none_or(|d| is_finite(&d.input))) {
+        if !(world.body().is_finite() && sample.decision.is_none_or(|d| is_finite(&d.input))) {
             end = End::NotFinite(t_s);
             break;
         }
@@ -204,14 +207,6 @@ fn fly_with<A: Answers>(
         end,
         times_real_time: flown / started.elapsed().as_secs_f64(),
     }
-}
-
-/// What the obstacle does: v, α, β, φ, θ and all rates become zero, p and ψ stay.
-fn stop_vehicle(x: &mut [f64; 16]) {
-    let before = *x;
-    *x = [0.0; 16];
-    x[index::POSITION..index::POSITION + 3].copy_from_slice(&before[index::POSITION..index::POSITION + 3]);
-    x[index::PSI] = before[index::PSI];
 }
 
 fn is_finite(input: &Input) -> bool {

@@ -1,6 +1,7 @@
 //! The command line: one file a command.
 
 mod check;
+mod compare;
 mod eval;
 mod fit;
 mod fly;
@@ -93,6 +94,12 @@ enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// Compare the law as published, with integral action, with disturbance observers, and trajectory tracking with them.
+    ///
+    /// Each flies the same random starts in each case: forces, wind, gusts, wrong masses, lengths, thrust and inertia, lag, latency, noise,
+    /// each alone and all together. Writes compare.json and compare.html.
+    #[command(after_help = compare::EXAMPLES)]
+    Compare(compare::CompareArguments),
     /// Fit a closed smooth curve to waypoints.
     ///
     /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and what there is to know of it.
@@ -121,6 +128,7 @@ pub fn run() -> Ended {
         Some(Command::Figures) | None => fly::fly(&common, fly::figures()?),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
+        Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),
         Some(Command::Target { listen }) => hil::target(&common, &listen),

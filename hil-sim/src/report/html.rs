@@ -7,7 +7,7 @@ use super::table::COLUMNS;
 use crate::batch::Outcome;
 use crate::reference::Reference;
 
-const STYLE: &str = "
+pub(crate) const STYLE: &str = "
 body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 1040px; margin: 2rem auto; padding: 0 1rem }
 h1 { font-size: 1.6rem } h2 { font-size: 1.2rem; margin-top: 2.5rem }
 .wide { overflow-x: auto }

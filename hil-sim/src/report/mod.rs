@@ -3,10 +3,11 @@
 mod figures;
 mod html;
 mod log;
-mod plot;
+pub(crate) mod plot;
 mod summary;
 mod table;
 
+pub(crate) use html::STYLE;
 pub use table::table;
 
 use std::io;
@@ -76,7 +77,7 @@ pub fn write(folder: &Path, outcomes: &[Outcome], reference: &Reference) -> Resu
 }
 
 /// Writes beside the file first and then renames, so that whatever happens no half-written file has its name.
-fn write_file(path: &Path, content: &[u8]) -> Result<(), ReportError> {
+pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), ReportError> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");
     std::fs::write(&partial, content)

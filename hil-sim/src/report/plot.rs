@@ -27,7 +27,7 @@ pub struct Track {
 
 /// A quantity over time.
 pub struct Curve {
-    /// What the legend says.
+    /// What the legend says; empty: nothing.
     pub label: String,
     /// Time (s) and value.
     pub points: Vec<(f64, f64)>,
@@ -215,10 +215,12 @@ pub fn time_log(area: &Area<'_>, quantity: &str, floor: f64, curves: &[Curve], m
     for curve in curves {
         let colour = curve.colour;
         let points = curve.points.iter().map(|&(t, value)| (t, value.max(floor)));
-        chart
-            .draw_series(LineSeries::new(points, colour.stroke_width(2)))?
-            .label(&curve.label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        let drawn = chart.draw_series(LineSeries::new(points, colour.stroke_width(2)))?;
+        if !curve.label.is_empty() {
+            drawn
+                .label(&curve.label)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+        }
     }
     Ok(chart
         .configure_series_labels()

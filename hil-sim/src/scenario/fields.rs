@@ -1,6 +1,6 @@
 //! The fields of a scenario file, and their way into a validated [`Scenario`].
 
-use controller::VehicleParams;
+use controller::{ActuatorLimits, ObserverParams, VehicleParams};
 use serde::Deserialize;
 
 use super::gains::{self, GainFields, PoleField};
@@ -8,6 +8,7 @@ use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
 use crate::check::Limits;
 use crate::course::{parse_path, parse_reference};
 use crate::input::{Invalid, all_within, read, within};
+use crate::models::{Actuators, Environment, Sensors};
 use crate::plant::VehicleParameters;
 
 #[derive(Deserialize)]
@@ -23,6 +24,14 @@ struct ScenarioFields {
     reference: Option<toml::Value>,
     initial: Option<toml::Value>,
     obstacle: Option<ObstacleFields>,
+    #[serde(default)]
+    environment: Environment,
+    #[serde(default)]
+    sensors: Sensors,
+    #[serde(default)]
+    actuators: Actuators,
+    #[serde(default)]
+    seed: u64,
     limits: Option<toml::Value>,
     duration_s: f64,
     #[serde(default = "four")]
@@ -47,6 +56,29 @@ struct ControllerFields {
     zeta: Option<[f64; 4]>,
     #[serde(default)]
     vehicle: VehicleFields,
+    #[serde(default)]
+    latency_s: f64,
+    #[serde(default)]
+    rotor_lag_s: f64,
+    #[serde(default)]
+    observer: ObserverFields,
+    limits: Option<LimitFields>,
+}
+
+/// Bandwidths, rad/s.
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct ObserverFields {
+    payload: f64,
+    rod: f64,
+    torque: f64,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitFields {
+    thrust: [f64; 2],
+    torque: [f64; 3],
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -126,6 +158,9 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
     let duration_s = within("duration_s", fields.duration_s, 0.01..=DURATION_LIMIT)?;
     let rate_hz = within("controller.rate_hz", fields.controller.rate_hz, 5.0..=10_000.0)?;
     let law = law(&fields.controller, fields.path, fields.reference)?;
+    fields.environment.check("environment")?;
+    fields.sensors.check("sensors", 1.0 / rate_hz)?;
+    fields.actuators.check("actuators")?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
     let (initial, zeta) = match fields.initial {
@@ -160,10 +195,18 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
             rate_hz,
             look_ahead: fields.controller.look_ahead,
             zeta: all_within("controller.zeta", zeta, 1e4)?,
+            latency_s: within("controller.latency_s", fields.controller.latency_s, 0.0..=0.5)?,
+            rotor_lag_s: within("controller.rotor_lag_s", fields.controller.rotor_lag_s, 0.0..=0.5)?,
+            observer: fields.controller.observer.params()?,
+            limits: fields.controller.limits.map_or(Ok(ActuatorLimits::none()), LimitFields::limits)?,
         },
         vehicle,
         initial,
         obstacle,
+        environment: fields.environment,
+        sensors: fields.sensors,
+        actuators: fields.actuators,
+        seed: fields.seed,
         limits,
         duration_s,
         substeps: within("substeps", fields.substeps, 1..=1000)?,
@@ -215,6 +258,30 @@ fn law(
         (LawName::Track, None, None) => {
             Err(Invalid::new("reference", "missing: the law \"track\" takes a reference"))
         }
+    }
+}
+
+impl ObserverFields {
+    fn params(self) -> Result<ObserverParams<f64>, Invalid> {
+        let bandwidth = |name: &str, value| within(&format!("controller.observer.{name}"), value, 0.0..=100.0);
+        Ok(ObserverParams {
+            payload_bandwidth: bandwidth("payload", self.payload)?,
+            rod_bandwidth: bandwidth("rod", self.rod)?,
+            torque_bandwidth: bandwidth("torque", self.torque)?,
+            ..ObserverParams::off()
+        })
+    }
+}
+
+impl LimitFields {
+    fn limits(self) -> Result<ActuatorLimits<f64>, Invalid> {
+        let [min_thrust, max_thrust] = self.thrust;
+        within("controller.limits.thrust[0]", min_thrust, 0.0..=1e6)?;
+        within("controller.limits.thrust[1]", max_thrust, min_thrust..=1e6)?;
+        for (axis, limit) in self.torque.into_iter().enumerate() {
+            within(&format!("controller.limits.torque[{axis}]"), limit, 0.0..=1e6)?;
+        }
+        Ok(ActuatorLimits { min_thrust, max_thrust, max_torque: self.torque })
     }
 }
 
