@@ -236,3 +236,15 @@ fn closed_curves_of_many_shapes_are_accepted() {
         assert!(report.lap.length() < 32.0 && report.lap.length() > 25.0);
     }
 }
+
+/// Double normals of known curves: an ellipse's minor axis (a saddle of the distance), and a flat bone's waist.
+#[test]
+fn branches_are_apart_by_the_shortest_double_normal() {
+    let ellipse = check(&implicit("(x/7)^2 + (y/4)^2 - 1", "z + 10")).unwrap();
+    let found = ellipse.branches.unwrap();
+    // As good as the cubics between the nodes.
+    assert!((found.distance - 8.0).abs() < 1e-7, "{ellipse}");
+    // r = 4 + 2 cos 2φ is 2 at its waist, φ = 90°.
+    let bone = check(&implicit("sqrt(x^2 + y^2) - 4 - 2*cos(2*atan2(y, x))", "z + 10")).unwrap();
+    assert!((bone.branches.unwrap().distance - 4.0).abs() < 1e-7, "{bone}");
+}

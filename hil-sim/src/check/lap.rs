@@ -118,50 +118,70 @@ impl Lap {
     }
 
     /// The two branches that come closest: points whose join is normal to the curve at both, which neighbours on a bend are
-    /// not. `None` for a curve without such a pair, as a circle.
+    /// not. `None` for a curve without such a pair.
     #[must_use]
     pub fn closest_branches(&self) -> Option<Approach> {
-        let count = self.nodes.len() - 1;
         let mut closest: Option<Approach> = None;
-        for i in 0..count {
-            let here = &self.nodes[i];
-            // Distance from here along the curve has its local minima where the other branch is passed squarely.
-            let squared = |j: usize| {
-                let join = self.nodes[j % count].position() - here.position();
-                join.dot(&join)
-            };
-            for offset in 2..count - 1 {
-                let j = i + offset;
-                if squared(j) > squared(j - 1) || squared(j) > squared(j + 1) {
-                    continue;
-                }
-                let there = self.nearest_on(j % count, here.position());
-                // Both feet can be nearer than this node's by as much as its neighbours are away.
-                let slack = self.nodes[i + 1].arc - here.arc;
-                if closest.is_none_or(|closest| there.distance < closest.distance + slack) {
-                    let found = self.squarely(i, j % count, there);
+        let mut before = self.branch_feet(0);
+        for i in 0..self.nodes.len() - 1 {
+            let after = self.branch_feet(i + 1);
+            let step = self.nodes[i + 1].arc - self.nodes[i].arc;
+            for from in &before {
+                // The same branch from the next node, and the join passes through the normal between the two.
+                let to = after.iter().find(|to| self.apart(from.foot.place.arc, to.foot.place.arc) < 4.0 * step);
+                if to.is_some_and(|to| from.along * to.along <= 0.0)
+                    && closest.is_none_or(|closest| from.foot.distance < closest.distance + step)
+                {
+                    let found = self.squarely(i, from);
                     if closest.is_none_or(|closest| found.distance < closest.distance) {
                         closest = Some(found);
                     }
                 }
             }
+            before = after;
         }
         closest
     }
 
-    /// The join of two branches, near the nodes `i` and `j`, that is normal to both: each foot in turn is the nearest point to the
-    /// other. Where branches cross at an angle γ the distance falls by cos γ each time.
-    fn squarely(&self, i: usize, j: usize, there: Nearest) -> Approach {
-        let (mut here, mut there) = (self.nearest_on(i, there.place.position), there);
-        for _ in 0..100 {
-            there = self.nearest_on(j, here.place.position);
-            let distance = here.distance;
-            here = self.nearest_on(i, there.place.position);
-            if here.distance > (1.0 - 1e-6) * distance {
-                break;
-            }
+    /// The feet on other branches from a node.
+    fn branch_feet(&self, i: usize) -> Vec<BranchFoot> {
+        let (count, here) = (self.nodes.len() - 1, &self.nodes[i]);
+        let squared = |offset: usize| {
+            let join = self.nodes[(i + offset) % count].position() - here.position();
+            join.dot(&join)
+        };
+        (2..count - 1)
+            .filter(|&offset| squared(offset) <= squared(offset - 1) && squared(offset) < squared(offset + 1))
+            .map(|offset| {
+                let node = (i + offset) % count;
+                let foot = self.nearest_on(node, here.position());
+                BranchFoot { node, along: (foot.place.position - here.position()).dot(&here.tangent()), foot }
+            })
+            .collect()
+    }
+
+    /// The join between the nodes `i` and `i` + 1 and the branch of `from` that is normal to both, by halving.
+    fn squarely(&self, i: usize, from: &BranchFoot) -> Approach {
+        let segment = Segment::between(&self.nodes[i], &self.nodes[i + 1]);
+        let (mut low, mut high) = (0.0, 1.0);
+        let (mut here, mut there) = (self.nodes[i].place(), from.foot);
+        // Down to rounding.
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let (position, slope) = (segment.point(middle), segment.slope(middle));
+            here = Place { position, arc: segment.arc + middle * segment.length };
+            // The branch passes within a step of its node.
+            there = self.nearest_on(from.node, position);
+            let along = (there.place.position - position).dot(&slope);
+            if along * from.along > 0.0 { low = middle } else { high = middle }
         }
-        Approach { distance: here.distance, here: here.place, there: there.place }
+        Approach { distance: there.distance, here, there: there.place }
+    }
+
+    /// Distance of two arc lengths along the closed curve.
+    fn apart(&self, one: f64, other: f64) -> f64 {
+        let way = (one - other).rem_euclid(self.length());
+        way.min(self.length() - way)
     }
 
     /// [`closest_branches`](Self::closest_branches), refused if they meet.
@@ -187,6 +207,15 @@ impl Lap {
     }
 }
 
+/// The foot on another branch of the curve, from a node.
+struct BranchFoot {
+    /// The node next to the foot.
+    node: usize,
+    foot: Nearest,
+    /// The join's part along the curve at the node it is from, m.
+    along: f64,
+}
+
 /// The cubic with the positions and tangents of two neighbouring nodes, over a parameter from 0 to 1.
 struct Segment {
     arc: f64,
@@ -208,11 +237,17 @@ impl Segment {
         c0 + (c1 + (c2 + c3 * t) * t) * t
     }
 
+    /// Derivative by the parameter.
+    fn slope(&self, t: f64) -> Vector3<f64> {
+        let [_, c1, c2, c3] = self.coefficients;
+        c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t
+    }
+
     /// Newton's method for the foot of the perpendicular, kept within the segment.
     fn nearest(&self, position: Vector3<f64>) -> Nearest {
-        let [_, c1, c2, c3] = self.coefficients;
+        let [_, _, c2, c3] = self.coefficients;
         let mut t = 0.5_f64;
-        let at = |t: f64| (self.point(t), c1 + (c2 * 2.0 + c3 * (3.0 * t)) * t);
+        let at = |t: f64| (self.point(t), self.slope(t));
         // The segment bends by 0.02 rad at most: three steps reach rounding from its middle.
         for _ in 0..4 {
             let (point, slope) = at(t);

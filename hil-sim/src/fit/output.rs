@@ -43,7 +43,10 @@ impl fmt::Display for Fit {
 #[must_use]
 pub fn toml(fit: &Fit, source: &str) -> String {
     let harmonics = &fit.harmonics;
-    let row = |row: &[f64; 3]| format!("[{:?}, {:?}, {:?}]", row[0], row[1], row[2]);
+    let row = |row: &[f64; 3]| {
+        let [x, y, z] = row.map(to_nanometres);
+        format!("[{x:?}, {y:?}, {z:?}]")
+    };
     let rows = |rows: &[[f64; 3]]| rows.iter().map(|each| format!("\n    {},", row(each))).collect::<String>();
     format!(
         "# Fitted to {source}: {} harmonics, waypoints within {:.4} m, length {:.3} m, least radius {:.3} m.\n\
@@ -59,12 +62,17 @@ pub fn toml(fit: &Fit, source: &str) -> String {
     )
 }
 
+/// Rounded, so that zeros look like zeros; never −0.
+fn to_nanometres(value: f64) -> f64 {
+    (1e9 * value).round() / 1e9 + 0.0
+}
+
 /// The curve as a constant of the controller's type, in `f32`.
 #[must_use]
 pub fn rust(fit: &Fit, source: &str) -> String {
     let harmonics = &fit.harmonics;
     let row = |row: &[f64; 3]| {
-        let [x, y, z] = row.map(|value| value as f32);
+        let [x, y, z] = row.map(|value| to_nanometres(value) as f32);
         format!("[{x:?}, {y:?}, {z:?}]")
     };
     let mut text = String::new();
