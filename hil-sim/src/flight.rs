@@ -1,7 +1,7 @@
-//! One flight of many: the f32 controller engaged from hover thrust in a [world](crate::world), judged by its distance from
+//! One flight of many: a controller in f32 engaged from hover thrust in a [world](crate::world), judged by its distance from
 //! the path. Comparisons and campaigns fly with this; it keeps no log, a watcher sees every period.
 
-use controller::{Command, SetupError, State, Vector3};
+use controller::{Command, Disturbance, Fault, Margins, Mode, State, Vector3};
 
 use crate::pilot::{Decision, Pilot};
 use crate::scenario::Scenario;
@@ -10,17 +10,64 @@ use crate::world::{Seed, World};
 /// A flight this far from its path is lost and ends, m.
 pub const LOST_M: f64 = 100.0;
 
+/// d_C below which a flight is good, m.
+pub const GOOD_M: f64 = 0.25;
+
+/// Share of the flight, at its end, in which d_C is judged.
+pub const JUDGED: f64 = 0.25;
+
 /// d_C is taken about this often, s: a nearest point can cost more than a step of the law.
 const DISTANCE_PERIOD_S: f64 = 0.01;
 
-/// Share of the flight, at its end, in which d_C is judged.
-const JUDGED: f64 = 0.25;
+/// What flies the vehicle: a law alone, or a supervised one.
+pub trait Steers {
+    /// Takes over from whatever applied `applied` until now.
+    fn engage(&mut self, state: &State<f64>, applied: &Command<f64>);
+
+    /// The command for the coming hold, from the state read now.
+    fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering;
+}
+
+/// An answer of what flies the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steering {
+    /// For the coming hold.
+    pub command: Command<f64>,
+    /// The law's distances from its singularities, where the law was asked.
+    pub margins: Option<Margins<f64>>,
+    /// What the vehicle is doing; [`Mode::Follow`] of a law alone.
+    pub mode: Mode,
+    /// Why it is not doing what was asked.
+    pub fault: Option<Fault>,
+    /// What has been found of disturbances.
+    pub disturbance: Disturbance<f64>,
+}
+
+impl Steers for Pilot<f32> {
+    fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        Self::engage(self, state, applied);
+    }
+
+    #[inline]
+    fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering {
+        let Decision { input, margins, .. } = self.step(state, t_s);
+        Steering {
+            command: Command { thrust: input.thrust, torque: Vector3::from(input.torque) },
+            margins: Some(margins),
+            mode: Mode::Follow,
+            fault: None,
+            disturbance: self.disturbance(),
+        }
+    }
+}
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
     /// At its duration.
     Complete,
+    /// On the ground, at this time, s.
+    Crashed(f64),
     /// [`LOST_M`] from its path, at this time, s.
     Lost(f64),
     /// With a state or command that is not finite, at this time, s.
@@ -36,9 +83,7 @@ pub struct Moment<'a> {
     /// d_C, m, where it was taken in this period.
     pub distance_m: Option<f64>,
     /// What the controller answered.
-    pub decision: &'a Decision,
-    /// The controller.
-    pub pilot: &'a Pilot<f32>,
+    pub steering: &'a Steering,
 }
 
 /// The result of a flight.
@@ -60,43 +105,57 @@ impl Outcome {
     }
 }
 
-/// d_C below which a flight is good, m.
-pub const GOOD_M: f64 = 0.25;
-
-/// Flies `scenario` from `start` with everything random drawn from `seed`.
-///
-/// # Errors
-/// [`SetupError`] if the scenario's numbers do not survive rounding to f32.
+/// Flies `scenario` from `start` with everything random drawn from `seed`; what flies before it engages is a hover at the thrust that
+/// the controller takes for one. `ground_p3` (m) is where a body that comes to it ends the flight.
 pub fn fly(
     scenario: &Scenario,
     start: &State<f64>,
     seed: Seed,
+    ground_p3: Option<f64>,
+    pilot: &mut impl Steers,
     watch: &mut impl FnMut(&Moment<'_>),
-) -> Result<Outcome, SetupError<f32>> {
+) -> Outcome {
     let told = &scenario.controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
-    let mut pilot = Pilot::<f32>::new(&scenario.controller)?;
     let mut world = World::new(&scenario.world(), start, hover, seed);
-
     let rate_hz = scenario.controller.rate_hz;
     let steps = scenario.steps();
+    let periods = |seconds: f64| (seconds * rate_hz).round() as u64;
+    let held = scenario.obstacle.map_or(0..0, |o| periods(o.at_s)..periods(o.at_s + o.hold_s));
+    let stopped_at = scenario.obstacle.map(|obstacle| periods(obstacle.at_s));
     let every = ((DISTANCE_PERIOD_S * rate_hz) as u64).max(1);
     let judged_from = ((1.0 - JUDGED) * steps as f64) as u64;
     let lost = |ending| Outcome { ending, dc_max_m: LOST_M, dc_rms_m: LOST_M };
     let (mut largest, mut squares, mut count) = (0.0_f64, 0.0, 0_u32);
+    let mut last: Option<Steering> = None;
     for step in 0..steps {
         let t_s = world.time_s();
-        let read = world.read();
-        if step == 0 {
-            pilot.engage(&read, &hover);
+        if stopped_at == Some(step) {
+            let attitude = world.body().state().attitude;
+            world.stop(libm::atan2(attitude.m21, attitude.m22));
+            last = None;
         }
-        let decision = pilot.step(&read, t_s);
+        if held.contains(&step) {
+            world.wait();
+            continue;
+        }
+        let read = world.read();
+        let steering = if let Some(last) = last.filter(|_| world.misses()) {
+            last
+        } else {
+            if last.is_none() {
+                pilot.engage(&read, &hover);
+            }
+            pilot.steer(&read, t_s)
+        };
+        last = Some(steering);
         let state = world.body().state();
         let distance_m = (step % every == 0).then(|| scenario.controller.law.distance(state.position.into()));
-        watch(&Moment { t_s, state: &state, distance_m, decision: &decision, pilot: &pilot });
+        watch(&Moment { t_s, state: &state, distance_m, steering: &steering });
         if let Some(distance) = distance_m {
+            // Not so of a NaN, which the body's finite state cannot give.
             if distance > LOST_M {
-                return Ok(lost(Ending::Lost(t_s)));
+                return lost(Ending::Lost(t_s));
             }
             if step >= judged_from {
                 largest = largest.max(distance);
@@ -104,13 +163,16 @@ pub fn fly(
                 count += 1;
             }
         }
-        let command = Command { thrust: decision.input.thrust, torque: Vector3::from(decision.input.torque) };
-        world.advance(&command);
+        if ground_p3.is_some_and(|ground| state.position.z >= ground || world.body().uav_position().z >= ground) {
+            return lost(Ending::Crashed(t_s));
+        }
+        let command = &steering.command;
+        world.advance(command);
         let finite = command.thrust.is_finite() && command.torque.iter().all(|torque| torque.is_finite());
         if !(finite && world.body().is_finite()) {
-            return Ok(lost(Ending::NotFinite(t_s)));
+            return lost(Ending::NotFinite(t_s));
         }
     }
     let dc_rms_m = (squares / f64::from(count.max(1))).sqrt();
-    Ok(Outcome { ending: Ending::Complete, dc_max_m: largest, dc_rms_m })
+    Outcome { ending: Ending::Complete, dc_max_m: largest, dc_rms_m }
 }

@@ -1,6 +1,7 @@
 //! Simulator of a slung load and its path-following law: plant, scenarios, flights, reports, and an independent witness.
 
 pub mod batch;
+pub mod campaign;
 pub mod check;
 pub mod compare;
 pub mod course;

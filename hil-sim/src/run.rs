@@ -143,6 +143,8 @@ fn fly_with<A: Answers>(
     let mut log = Vec::with_capacity((steps / log_every) as usize + 2);
     let mut end = End::Complete;
     let mut start = Some(scenario.controller.zeta);
+    // What goes on where the controller misses a sample.
+    let mut last: Option<Decision> = None;
     let mut step = 0;
     while step < steps {
         let t_s = step as f64 * period;
@@ -172,14 +174,20 @@ fn fly_with<A: Answers>(
                     twin.start(&state, zeta);
                 }
             }
-            let Some(decision) = pilot.step(&state, t_s) else {
-                end = End::Unanswered(t_s);
-                break;
+            let decision = if let Some(last) = last.filter(|_| world.misses()) {
+                last
+            } else {
+                let Some(decision) = pilot.step(&state, t_s) else {
+                    end = End::Unanswered(t_s);
+                    break;
+                };
+                if let Some(twin) = &mut twin {
+                    deviations.push(&decision, &twin.step(&state, t_s));
+                }
+                decision
             };
-            sample.decision = Some(decision);
-            if let Some(twin) = &mut twin {
-                deviations.push(&decision, &twin.step(&state, t_s));
-            }
+            last = Some(decision);
+            sample.decision = last;
             let Input { thrust, torque } = decision.input;
             world.advance(&Command { thrust, torque: torque.into() });
             x = world.body().state().to_paper();

@@ -5,7 +5,7 @@
 
 use controller::{Command, State, Vector3};
 
-use crate::models::{ActuatorModel, Actuators, Dryden, Environment, SensorModel, Sensors, drag};
+use crate::models::{ActuatorModel, Actuators, Dryden, Environment, SensorModel, Sensors, Timing, drag};
 use crate::multibody::{Loads, Multibody};
 use crate::plant::VehicleParameters;
 use crate::random::{Purpose, Stream};
@@ -21,6 +21,8 @@ pub struct WorldSpec {
     pub sensors: Sensors,
     /// Latency, lag, limits.
     pub actuators: Actuators,
+    /// The control loop's clock.
+    pub timing: Timing,
     /// Control period, s.
     pub period: f64,
     /// Runge-Kutta steps in a control period.
@@ -56,6 +58,7 @@ pub struct World {
     air: Vector3<f64>,
     /// ½ ρ C_d A of payload and UAV, kg/m.
     drag: [f64; 2],
+    clock: Stream,
     t_s: f64,
 }
 
@@ -76,6 +79,7 @@ impl World {
                 [air.payload_drag_area, air.uav_drag_area].map(|area| 0.5 * air.density * area)
             }),
             body,
+            clock: seed.stream(Purpose::Timing),
             spec: *spec,
             t_s: 0.0,
         }
@@ -97,6 +101,11 @@ impl World {
     #[inline]
     pub fn read(&mut self) -> State<f64> {
         self.sensors.read(self.t_s, &self.body.state())
+    }
+
+    /// Whether the controller misses this sample. At most once a period.
+    pub fn misses(&mut self) -> bool {
+        self.spec.timing.misses(&mut self.clock)
     }
 
     /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities zero; position and yaw stay.
@@ -121,7 +130,7 @@ impl World {
             self.air = Vector3::from(mean) + gusts.step();
         }
         self.actuators.push(self.t_s, command);
-        let end_s = self.t_s + self.spec.period;
+        let end_s = self.t_s + self.spec.period * self.spec.timing.stretch(&mut self.clock);
         // A piece shorter than the clock's rounding ends the period.
         while end_s - self.t_s > 1e-12 {
             let piece = self.actuators.piece(self.t_s, end_s);
@@ -154,8 +163,8 @@ impl World {
         let step = piece / steps;
         for index in 0..steps as u32 {
             let start = step * f64::from(index);
-            let actuators = &self.actuators;
-            self.body.advance(step, |t| actuators.at(start + t), loads);
+            let (actuators, t_s) = (&self.actuators, self.t_s);
+            self.body.advance(step, |t| actuators.at(t_s, start + t), loads);
         }
         self.actuators.pass(piece);
     }

@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod campaign;
 mod check;
 mod compare;
 mod eval;
@@ -94,6 +95,19 @@ enum Command {
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
+    /// Fly thousands of flights, each drawn from distributions, and say how often the law does what it should.
+    ///
+    /// Same seed, same table, whatever the number of threads. Interrupted, the same command goes on. Writes runs.csv (a row a flight),
+    /// summary.json and campaign.html.
+    #[command(after_help = campaign::EXAMPLES)]
+    Campaign(campaign::CampaignArguments),
+    /// Put the shards of a campaign together: their tables become the whole campaign's.
+    #[command(after_help = campaign::MERGE_EXAMPLES)]
+    Merge {
+        /// Folders of all shards.
+        #[arg(required = true, value_name = "DIR")]
+        folders: Vec<PathBuf>,
+    },
     /// Compare the law as published, with integral action, with disturbance observers, and trajectory tracking with them.
     ///
     /// Each flies the same random starts in each case: forces, wind, gusts, wrong masses, lengths, thrust and inertia, lag, latency, noise,
@@ -128,6 +142,8 @@ pub fn run() -> Ended {
         Some(Command::Figures) | None => fly::fly(&common, fly::figures()?),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
+        Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),
+        Some(Command::Merge { folders }) => campaign::merge(&common, &folders),
         Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),

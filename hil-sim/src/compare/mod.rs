@@ -10,6 +10,7 @@ mod table;
 
 pub use cases::{CASES, Case, start};
 pub use page::write;
+pub(crate) use table::length;
 pub use table::{table, worse};
 
 use controller::{ObserverParams, TrackGains};
@@ -19,6 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::course::ReferenceSpec;
 use crate::flight::{LOST_M, Outcome, fly};
+use crate::pilot::Pilot;
 use crate::random::Purpose;
 use crate::scenario::{Law, Scenario, ScenarioError};
 use crate::world::Seed;
@@ -142,7 +144,9 @@ fn fly_one(scenario: &Scenario, case: &Case, seed: Seed) -> (Outcome, Vec<f32>) 
     (case.apply)(&mut scenario, &mut random);
     let mut trace = Vec::new();
     let points = (scenario.duration_s / TRACE_PERIOD_S) as usize;
-    let outcome = fly(&scenario, &start, seed, &mut |moment| {
+    // The numbers of the comparison are constants that f32 holds, as the tests show.
+    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
+    let outcome = fly(&scenario, &start, seed, None, &mut pilot, &mut |moment| {
         if let Some(distance) = moment.distance_m
             && moment.t_s >= TRACE_PERIOD_S * trace.len() as f64 - 1e-9
         {
@@ -150,8 +154,7 @@ fn fly_one(scenario: &Scenario, case: &Case, seed: Seed) -> (Outcome, Vec<f32>) 
         }
     });
     trace.resize(points, LOST_M as f32);
-    // The numbers of the comparison are constants that f32 holds, as the tests show.
-    (outcome.expect("the comparison's scenarios can be set up"), trace)
+    (outcome, trace)
 }
 
 /// Flies `runs` flights for every case and law whose names `wanted` accepts; `None` once `stop` is true.
@@ -262,13 +265,13 @@ mod tests {
         scenario.environment.payload_force = [0.6, 0.8, 0.0];
         let start = State::from_paper(&scenario.initial);
         let mut worst = 0.0_f64;
-        let outcome = fly(&scenario, &start, Seed::default(), &mut |moment| {
+        let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it can be set up");
+        let outcome = fly(&scenario, &start, Seed::default(), None, &mut pilot, &mut |moment| {
             if moment.t_s >= 3.0 {
-                let found = moment.pilot.disturbance().payload * 0.5;
+                let found = moment.steering.disturbance.payload * 0.5;
                 worst = worst.max((found - controller::Vector3::new(0.6, 0.8, 0.0)).amax());
             }
-        })
-        .expect("it can be set up");
+        });
         println!("d_C {:.2e} m, estimate within {worst:.4} N after 3 s", outcome.dc_max_m);
         assert!(outcome.dc_max_m <= 5e-3 && worst <= 0.02, "{outcome:?} {worst}");
     }

@@ -29,7 +29,7 @@ fn cell(row: &Row) -> String {
 }
 
 /// A length in m, mm or µm, to two or three digits.
-pub(super) fn length(metres: f64) -> String {
+pub(crate) fn length(metres: f64) -> String {
     match metres {
         m if m >= 1.0 => format!("{m:.1} m"),
         m if m >= 1e-3 => format!("{:.*} mm", usize::from(m < 0.01), 1e3 * m),

@@ -9,6 +9,7 @@ use serde::Deserialize;
 use std::collections::VecDeque;
 
 use super::check;
+use super::rotors::Rotors;
 use crate::input::{Invalid, join, within};
 
 /// The actuators of a flight.
@@ -25,12 +26,14 @@ pub struct Actuators {
     pub thrust_range: Option<[f64; 2]>,
     /// Largest torque about each body axis, N·m; none if left out.
     pub max_torque: Option<[f64; 3]>,
+    /// The rotors, each with its limits; ideal ones if left out.
+    pub rotors: Option<Rotors>,
 }
 
 impl Default for Actuators {
     /// Ideal.
     fn default() -> Self {
-        Self { lag_s: 0.0, latency_s: 0.0, thrust_scale: 1.0, thrust_range: None, max_torque: None }
+        Self { lag_s: 0.0, latency_s: 0.0, thrust_scale: 1.0, thrust_range: None, max_torque: None, rotors: None }
     }
 }
 
@@ -52,7 +55,7 @@ impl Actuators {
                 within(&join(at, &format!("max_torque[{axis}]")), limit, 0.0..=1e5)?;
             }
         }
-        Ok(())
+        self.rotors.map_or(Ok(()), |rotors| rotors.check(&join(at, "rotors")))
     }
 
     fn saturate(&self, command: &Command<f64>) -> Command<f64> {
@@ -61,7 +64,8 @@ impl Actuators {
             let limit = Vector3::from(limit);
             command.torque.zip_map(&limit, |torque, limit| torque.clamp(-limit, limit))
         });
-        Command { thrust, torque }
+        let command = Command { thrust, torque };
+        self.rotors.map_or(command, |rotors| rotors.limit(&command))
     }
 }
 
@@ -104,10 +108,13 @@ impl ActuatorModel {
         end_s - t_s
     }
 
-    /// What acts on the vehicle `dt` s after the piece's start.
+    /// What acts on the vehicle `dt` s after the piece's start at `t_s`.
     #[must_use]
-    pub fn at(&self, dt: f64) -> Command<f64> {
+    pub fn at(&self, t_s: f64, dt: f64) -> Command<f64> {
         let mut command = self.lagging(dt);
+        if let Some(rotors) = &self.actuators.rotors {
+            command = rotors.fail(t_s + dt, &command);
+        }
         command.thrust *= self.actuators.thrust_scale;
         command
     }
@@ -153,8 +160,8 @@ mod tests {
             }
         }
         let expected = 0.5 * (20.0 - 10.0 * (-0.001_f64 / 0.05).exp());
-        assert!((model.at(0.0).thrust - expected).abs() < 1e-12);
-        assert!((model.at(10.0).thrust - 10.0).abs() < 1e-12, "half of what is commanded in the end");
+        assert!((model.at(0.0, 0.0).thrust - expected).abs() < 1e-12);
+        assert!((model.at(0.0, 10.0).thrust - 10.0).abs() < 1e-12, "half of what is commanded in the end");
     }
 
     #[test]
@@ -164,6 +171,6 @@ mod tests {
         let mut model = ActuatorModel::new(actuators, thrust(30.0));
         model.push(0.0, &Command { thrust: 100.0, torque: Vector3::new(-5.0, 5.0, 0.5) });
         model.piece(0.0, 0.002);
-        assert_eq!(model.at(0.0), Command { thrust: 60.0, torque: Vector3::new(-1.0, 2.0, 0.5) });
+        assert_eq!(model.at(0.0, 0.0), Command { thrust: 60.0, torque: Vector3::new(-1.0, 2.0, 0.5) });
     }
 }

@@ -24,17 +24,26 @@
 //! lag_s = 0.05
 //! latency_s = 0.01
 //! thrust_scale = 0.85
+//! rotors = { layout = "quad-x", arm_m = 0.3, drag_m = 0.02, max_thrust = 15.0, failure = { rotor = 1, at_s = 9.0, effectiveness = 0.0 } }
+//!
+//! [timing]
+//! jitter = 0.1                      # each control period within ±10 %
+//! missed = 0.01                     # probability that the controller is not called
 //! ```
 
 mod actuators;
 mod dryden;
 mod environment;
+mod rotors;
 mod sensors;
+mod timing;
 
 pub use actuators::{ActuatorModel, Actuators};
 pub use dryden::{Dryden, Gusts};
 pub use environment::{Air, Environment, PayloadStep, drag};
+pub use rotors::{Layout, RotorFailure, Rotors};
 pub use sensors::{Channel, SensorModel, Sensors, Window};
+pub use timing::Timing;
 
 use crate::input::{Invalid, within};
 

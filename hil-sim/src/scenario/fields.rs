@@ -8,7 +8,7 @@ use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
 use crate::check::Limits;
 use crate::course::{parse_path, parse_reference};
 use crate::input::{Invalid, all_within, read, within};
-use crate::models::{Actuators, Environment, Sensors};
+use crate::models::{Actuators, Environment, Sensors, Timing};
 use crate::plant::VehicleParameters;
 
 #[derive(Deserialize)]
@@ -30,6 +30,8 @@ struct ScenarioFields {
     sensors: Sensors,
     #[serde(default)]
     actuators: Actuators,
+    #[serde(default)]
+    timing: Timing,
     #[serde(default)]
     seed: u64,
     limits: Option<toml::Value>,
@@ -148,8 +150,7 @@ fn yes() -> bool {
 const DURATION_LIMIT: f64 = 1e5;
 
 /// Reads and validates the scenario `name`.
-pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
-    let table: toml::Table = toml::from_str(text).map_err(|error| Invalid::new("", error.message()))?;
+pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Invalid> {
     let fields: ScenarioFields = read("", table)?;
 
     let table_one = VehicleParameters::default();
@@ -161,6 +162,7 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
     fields.environment.check("environment")?;
     fields.sensors.check("sensors", 1.0 / rate_hz)?;
     fields.actuators.check("actuators")?;
+    fields.timing.check("timing")?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
     let (initial, zeta) = match fields.initial {
@@ -206,6 +208,7 @@ pub(super) fn scenario(name: &str, text: &str) -> Result<Scenario, Invalid> {
         environment: fields.environment,
         sensors: fields.sensors,
         actuators: fields.actuators,
+        timing: fields.timing,
         seed: fields.seed,
         limits,
         duration_s,

@@ -27,7 +27,7 @@
 //! limits = { thrust = [3.0, 60.0], torque = [3.0, 3.0, 3.0] }                 # on its commands, N and N·m
 //! ```
 //!
-//! `[environment]`, `[sensors]` and `[actuators]` are described in [`models`](crate::models); `seed` is that of their random numbers.
+//! `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described in [`models`](crate::models); `seed` is that of their random numbers.
 
 mod document;
 mod fields;
@@ -35,13 +35,14 @@ mod gains;
 mod library;
 mod steady;
 
-pub use library::{FIGURES, builtin};
+pub use library::{CURVES, FIGURES, builtin};
 
 use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
 
 use crate::check::Limits;
 use crate::course::{PathSpec, ReferenceSpec};
-use crate::models::{Actuators, Environment, Sensors};
+use crate::input::Invalid;
+use crate::models::{Actuators, Environment, Sensors, Timing};
 use crate::plant::VehicleParameters;
 use crate::world::WorldSpec;
 
@@ -68,6 +69,8 @@ pub struct Scenario {
     pub sensors: Sensors,
     /// What becomes of its commands.
     pub actuators: Actuators,
+    /// The control loop's clock.
+    pub timing: Timing,
     /// Of all that is random.
     pub seed: u64,
     /// What the vehicle may be asked to do on its path.
@@ -208,7 +211,16 @@ impl Scenario {
         let error = |line, message| ScenarioError { file: file.to_owned(), line, message };
         let document = document::Document::parse(text).map_err(|(line, message)| error(line, message))?;
         let name = std::path::Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
-        fields::scenario(&name, text).map_err(|invalid| error(document.line_of(&invalid.field), invalid.to_string()))
+        let table: toml::Table = toml::from_str(text).map_err(|wrong| error(1, wrong.message().to_owned()))?;
+        fields::scenario(&name, table).map_err(|invalid| error(document.line_of(&invalid.field), invalid.to_string()))
+    }
+
+    /// A scenario from its parsed keys.
+    ///
+    /// # Errors
+    /// [`Invalid`] names the field that is unknown, missing or out of range.
+    pub fn from_table(name: &str, table: toml::Table) -> Result<Self, Invalid> {
+        fields::scenario(name, table)
     }
 
     /// All but the controller.
@@ -219,6 +231,7 @@ impl Scenario {
             environment: self.environment,
             sensors: self.sensors,
             actuators: self.actuators,
+            timing: self.timing,
             period: 1.0 / self.controller.rate_hz,
             substeps: self.substeps,
         }

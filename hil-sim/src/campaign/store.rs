@@ -1,0 +1,202 @@
+//! The table on disk: rows in the order of their flights, so that it is the same whatever the number of threads or interruptions.
+
+use serde::{Deserialize, Serialize};
+use std::fs::{File, OpenOptions};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+use super::fly::Row;
+
+/// What a folder's results are of. Two folders with equal identities and shards hold equal tables.
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Identity {
+    /// Text of the campaign's file.
+    pub campaign: String,
+    /// Flights in the whole campaign.
+    pub runs: u64,
+    /// Of all random numbers.
+    pub seed: u64,
+    /// Which part of it: flights whose number leaves `index` when divided by `of`.
+    pub shard: Shard,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// A part of a campaign.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shard {
+    /// From 0.
+    pub index: u64,
+    /// Number of parts.
+    pub of: u64,
+}
+
+impl Shard {
+    /// All of it.
+    pub const WHOLE: Self = Self { index: 0, of: 1 };
+
+    /// The flights of this part, in order.
+    pub fn runs(self, runs: u64) -> impl Iterator<Item = u64> {
+        (self.index..runs).step_by(self.of.max(1) as usize)
+    }
+}
+
+/// A table that cannot be read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// A file.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A file's contents.
+    #[error("{}: {message}", path.display())]
+    Contents {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with them.
+        message: String,
+    },
+}
+
+/// A folder's table.
+pub struct Store {
+    path: PathBuf,
+    writer: csv::Writer<BufWriter<File>>,
+}
+
+impl Store {
+    /// Opens the table of `identity` in `folder`, with the rows that are there already. A torn last line is cut off.
+    ///
+    /// # Errors
+    /// [`StoreError`] if the folder holds another campaign's results, or cannot be read or written.
+    pub fn open(folder: &Path, identity: &Identity) -> Result<(Self, Vec<Row>), StoreError> {
+        let path = folder.join("runs.csv");
+        let fail = |error| StoreError::File { path: path.clone(), error };
+        std::fs::create_dir_all(folder).map_err(fail)?;
+        let known = folder.join("campaign.json");
+        let rows = match read_identity(folder)? {
+            Some(other) if other == *identity => read_rows(&path, identity)?,
+            Some(_) => {
+                let message = "another campaign's results are here: give another folder, or delete it".to_owned();
+                return Err(StoreError::Contents { path: known, message });
+            }
+            None => {
+                let text = serde_json::to_string_pretty(identity).unwrap_or_default();
+                crate::report::write_file(&known, text.as_bytes())
+                    .map_err(|error| StoreError::File { path: known.clone(), error: io::Error::other(error) })?;
+                Vec::new()
+            }
+        };
+        // What is whole is written again in one piece, so that a torn line leaves no trace.
+        let mut text = encode(&rows);
+        if rows.is_empty() {
+            text = header();
+        }
+        crate::report::write_file(&path, &text).map_err(|error| fail(io::Error::other(error)))?;
+        let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(BufWriter::new(file));
+        Ok((Self { path, writer }, rows))
+    }
+
+    /// Appends rows and has them reach the disk.
+    ///
+    /// # Errors
+    /// [`StoreError`] if they do not.
+    pub fn append(&mut self, rows: &[Row]) -> Result<(), StoreError> {
+        let written = rows.iter().try_for_each(|row| self.writer.serialize(row).map_err(io::Error::other));
+        written
+            .and_then(|()| self.writer.flush())
+            .map_err(|error| StoreError::File { path: self.path.clone(), error })
+    }
+}
+
+fn read_identity(folder: &Path) -> Result<Option<Identity>, StoreError> {
+    let path = folder.join("campaign.json");
+    match std::fs::read_to_string(&path) {
+        Ok(text) => serde_json::from_str(&text)
+            .map(Some)
+            .map_err(|error| StoreError::Contents { path, message: error.to_string() }),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(StoreError::File { path, error }),
+    }
+}
+
+/// The whole rows of a table: the flights of the shard, in order, up to the first that is not there.
+fn read_rows(path: &Path, identity: &Identity) -> Result<Vec<Row>, StoreError> {
+    let text = match std::fs::read(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => return Err(StoreError::File { path: path.to_owned(), error }),
+    };
+    let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
+    let mut reader = csv::Reader::from_reader(&text[..whole]);
+    let mut rows = Vec::new();
+    for (row, run) in reader.deserialize::<Row>().zip(identity.shard.runs(identity.runs)) {
+        let contents = |message: String| StoreError::Contents { path: path.to_owned(), message };
+        let row = row.map_err(|error| contents(error.to_string()))?;
+        if row.run != run {
+            return Err(contents(format!("flight {} stands where {run} should", row.run)));
+        }
+        rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// Puts the tables of all shards of one campaign together.
+///
+/// # Errors
+/// [`StoreError`] if they are not the shards of one campaign, all there and complete, or a file cannot be read.
+pub fn merge(folders: &[PathBuf]) -> Result<(Identity, Vec<Row>), StoreError> {
+    let wrong = |folder: &Path, message: String| StoreError::Contents { path: folder.to_owned(), message };
+    let mut whole: Option<Identity> = None;
+    let mut rows = Vec::new();
+    for folder in folders {
+        let identity =
+            read_identity(folder)?.ok_or_else(|| wrong(folder, "there are no results of a campaign".to_owned()))?;
+        let found = read_rows(&folder.join("runs.csv"), &identity)?;
+        let expected = identity.shard.runs(identity.runs).count();
+        if found.len() != expected {
+            return Err(wrong(folder, format!("{} of {expected} flights are done", found.len())));
+        }
+        let identity = Identity { shard: Shard::WHOLE, ..identity };
+        match &whole {
+            Some(other) if *other != identity => {
+                return Err(wrong(folder, "not of the same campaign, seed and number of flights".to_owned()));
+            }
+            _ => whole = Some(identity),
+        }
+        rows.extend(found);
+    }
+    let nothing = || wrong(Path::new("merge"), "no folders".to_owned());
+    let identity = whole.ok_or_else(nothing)?;
+    rows.sort_by_key(|row| row.run);
+    if let Some((index, row)) = (0..).zip(&rows).find(|(index, row)| row.run != *index) {
+        return Err(wrong(Path::new("merge"), format!("flight {} stands where {index} should", row.run)));
+    }
+    if rows.len() as u64 != identity.runs {
+        let message = format!("{} flights of {}: a shard is missing", rows.len(), identity.runs);
+        return Err(wrong(Path::new("merge"), message));
+    }
+    Ok((identity, rows))
+}
+
+fn encode(rows: &[Row]) -> Vec<u8> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row).expect("plain fields into memory");
+    }
+    writer.into_inner().expect("a vector can be flushed")
+}
+
+/// The line of names alone.
+fn header() -> Vec<u8> {
+    let mut text = encode(std::slice::from_ref(&Row::nothing()));
+    text.truncate(text.iter().position(|&byte| byte == b'\n').map_or(0, |end| end + 1));
+    text
+}

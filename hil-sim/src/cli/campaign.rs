@@ -1,0 +1,153 @@
+//! `campaign` and `merge`: thousands of drawn flights.
+
+use clap::Args;
+use hil_sim::campaign::{self, Campaign, Identity, Row, Shard};
+use hil_sim::world::Seed;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use super::{Common, Ended};
+
+/// Each example can be pasted into a shell.
+pub const EXAMPLES: &str = "Examples:
+  hil-sim campaign                               the campaign that comes with the program
+  hil-sim campaign my.toml --runs 1000 --seed 7 --jobs 2 --out results
+  hil-sim campaign my.toml --out results         again: goes on where it was interrupted
+  hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
+  hil-sim campaign my.toml --shard 1/4 --out part1    a quarter, for a cluster; see `hil-sim merge`";
+
+/// Each example can be pasted into a shell.
+pub const MERGE_EXAMPLES: &str = "Examples:
+  hil-sim merge part1 part2 part3 part4 --out whole";
+
+/// The campaign that comes with the program.
+const BUILTIN: &str = include_str!("../../scenarios/campaign.toml");
+
+/// What to fly.
+#[derive(Args)]
+pub struct CampaignArguments {
+    /// Campaign file; left out: the one that comes with the program.
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// Flights; as the file says if left out.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    runs: Option<u64>,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Threads; all cores if left out.
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    jobs: Option<u16>,
+    /// Fly this one flight again, with its full log.
+    #[arg(long, value_name = "ROW", conflicts_with = "shard")]
+    replay: Option<u64>,
+    /// Fly the i-th of n parts only.
+    #[arg(long, value_name = "i/n", value_parser = shard)]
+    shard: Option<Shard>,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let parts = text.split_once('/').and_then(|(i, n)| Some((i.parse::<u64>().ok()?, n.parse::<u64>().ok()?)));
+    match parts {
+        Some((index, of)) if 1 <= index && index <= of => Ok(Shard { index: index - 1, of }),
+        _ => Err("not of the form i/n with 1 <= i <= n".to_owned()),
+    }
+}
+
+/// Flies, prints, reports.
+pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
+    let (name, text) = match &arguments.file {
+        Some(file) => {
+            let name = file.display().to_string();
+            let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
+            (name, text)
+        }
+        None => ("campaign.toml".to_owned(), BUILTIN.to_owned()),
+    };
+    let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
+    if let Some(run) = arguments.replay {
+        return replay(common, &campaign, Seed { batch: arguments.seed, run });
+    }
+
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler = Arc::clone(&stop);
+    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+    let identity = Identity {
+        campaign: text,
+        runs: arguments.runs.unwrap_or(campaign.runs),
+        seed: arguments.seed,
+        shard: arguments.shard.unwrap_or(Shard::WHOLE),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.map_or(0, usize::from)).build()?;
+    let planned = identity.shard.runs(identity.runs).count();
+    let bar = bar(common.quiet, planned as u64);
+    let started = Instant::now();
+    let rows = pool.install(|| campaign::run(&campaign, &identity, common.folder(), &stop, &|done| bar.inc(done)))?;
+    bar.finish_and_clear();
+    if rows.len() < planned {
+        eprintln!("hil-sim: interrupted: {} of {planned} flights are kept; the same command goes on", rows.len());
+        return Ok(ExitCode::from(130));
+    }
+    report(common, &campaign, identity.seed, &rows)?;
+    if !common.quiet {
+        let wall_s = started.elapsed().as_secs_f64();
+        writeln!(
+            io::stdout().lock(),
+            "{planned} flights in {wall_s:.0} s on {} threads",
+            pool.current_num_threads()
+        )?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Puts the shards of a campaign together.
+pub fn merge(common: &Common, folders: &[PathBuf]) -> Ended {
+    let (identity, rows) = campaign::merge(folders)?;
+    let (mut store, found) = campaign::Store::open(common.folder(), &identity)?;
+    store.append(rows.get(found.len()..).unwrap_or_default())?;
+    let campaign = Campaign::parse(&identity.campaign)?;
+    report(common, &campaign, identity.seed, &rows)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn report(common: &Common, campaign: &Campaign, seed: u64, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
+    let summary = campaign::summarize(seed, rows);
+    let duration_s = campaign.draw(Seed { batch: seed, run: 0 })?.scenario.duration_s;
+    let page = campaign::write(common.folder(), &campaign.title, duration_s, &summary, rows)?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        write!(out, "{}", summary.text(rows))?;
+        writeln!(out, "Report: {}", page.display())?;
+    }
+    Ok(())
+}
+
+fn replay(common: &Common, campaign: &Campaign, seed: Seed) -> Ended {
+    let (row, log) = campaign::replay(campaign, seed)?;
+    let folder: &Path = common.folder();
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let path = folder.join(format!("replay-{}.csv", seed.run));
+    std::fs::write(&path, log).map_err(|error| format!("{}: {error}", path.display()))?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        writeln!(out, "{row:#?}\nLog: {}", path.display())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A bar on standard error; none where that is no terminal.
+fn bar(quiet: bool, flights: u64) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(flights);
+    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len} flights, {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
