@@ -135,7 +135,9 @@ const F64: f64 = 1e-12;
 /// In f32 the worst vectors are those in which ū nearly cancels; unit roundoff is 6e-8.
 const F32_WORST: f64 = 4e-5;
 const F32_MEDIAN: f64 = 3e-7;
-const F32_TORQUE: f64 = 6e-6;
+const F32_TORQUE: f64 = 4e-6;
+/// The curves whose tangent is normalized divide twice more, by formula with gradients of their own rounding.
+const F32_TORQUE_NORMALIZED: f64 = 6e-6;
 /// T and ξ in f32: a few tens of roundings of numbers that do not cancel.
 const F32_OUTPUTS: f64 = 2e-6;
 
@@ -232,7 +234,7 @@ fn ellipse_f64() {
 #[test]
 fn ellipse_f32() {
     let errors = follow_errors::<f32, _>("ellipse", ellipse);
-    errors.assert("ellipse f32", F32_WORST, F32_MEDIAN, F32_TORQUE, F32_OUTPUTS);
+    errors.assert("ellipse f32", F32_WORST, F32_MEDIAN, F32_TORQUE_NORMALIZED, F32_OUTPUTS);
 }
 
 #[test]
@@ -243,7 +245,7 @@ fn ellipse_formula_f64() {
 #[test]
 fn ellipse_formula_f32() {
     let errors = follow_errors::<f32, _>("ellipse", ellipse_formula);
-    errors.assert("ellipse by formula f32", F32_WORST, F32_MEDIAN, F32_TORQUE, F32_OUTPUTS);
+    errors.assert("ellipse by formula f32", F32_WORST, F32_MEDIAN, F32_TORQUE_NORMALIZED, F32_OUTPUTS);
 }
 
 #[test]
@@ -254,7 +256,7 @@ fn bent_f64() {
 #[test]
 fn bent_f32() {
     let errors = follow_errors::<f32, _>("bent", bent);
-    errors.assert("bent f32", F32_WORST, F32_MEDIAN, F32_TORQUE, F32_OUTPUTS);
+    errors.assert("bent f32", F32_WORST, F32_MEDIAN, F32_TORQUE_NORMALIZED, F32_OUTPUTS);
 }
 
 #[test]
@@ -265,5 +267,5 @@ fn bent_formula_f64() {
 #[test]
 fn bent_formula_f32() {
     let errors = follow_errors::<f32, _>("bent", bent_formula);
-    errors.assert("bent by formula f32", F32_WORST, F32_MEDIAN, F32_TORQUE, F32_OUTPUTS);
+    errors.assert("bent by formula f32", F32_WORST, F32_MEDIAN, F32_TORQUE_NORMALIZED, F32_OUTPUTS);
 }

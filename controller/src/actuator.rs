@@ -25,7 +25,7 @@ impl<T: Real> ActuatorLimits<T> {
 
     pub(crate) fn check(&self) -> Result<(), OutOfRange<T>> {
         OutOfRange::check("min_thrust", self.min_thrust, -1e6, 1e6)?;
-        OutOfRange::check("max_thrust", self.max_thrust, self.min_thrust.to_f64(), 1e6)?;
+        OutOfRange::within("max_thrust", self.max_thrust, self.min_thrust, T::lit(1e6))?;
         let [t1, t2, t3] = self.max_torque;
         OutOfRange::check("max_torque[0]", t1, 0.0, 1e6)?;
         OutOfRange::check("max_torque[1]", t2, 0.0, 1e6)?;

@@ -63,13 +63,13 @@ impl<T: Real> ApproachLimits<T> {
     }
 
     pub(crate) fn check(&self, vehicle: &Vehicle<T>) -> Result<(), OutOfRange<T>> {
-        let hover = vehicle.hover_thrust().to_f64();
+        let hover = vehicle.hover_thrust();
         OutOfRange::check("speed", self.speed, 0.01, 100.0)?;
         OutOfRange::check("acceleration", self.acceleration, 0.01, 100.0)?;
         OutOfRange::check("tilt", self.tilt, 0.01, 1.2)?;
         OutOfRange::check("rod_angle", self.rod_angle, 0.01, 1.2)?;
-        OutOfRange::check("min_thrust", self.min_thrust, 0.0, 0.999 * hover)?;
-        OutOfRange::check("max_thrust", self.max_thrust, 1.001 * hover, 1e6)
+        OutOfRange::within("min_thrust", self.min_thrust, T::zero(), hover * T::lit(0.999))?;
+        OutOfRange::within("max_thrust", self.max_thrust, hover * T::lit(1.001), T::lit(1e6))
     }
 
     /// The largest acceleration (m/s²) and snap (m/s⁴) of the payload that keep the limits. An acceleration a needs a rod angle of
@@ -146,6 +146,13 @@ impl<T: Real> Approach<T> {
         }
     }
 
+    /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
+    pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
+        path.engage(position);
+        let outputs = at_rest(path, position);
+        Self { path_det: determinant(&outputs), ..Self::none() }
+    }
+
     /// From `state`. `None` if no point of the path is found: the search is Newton's on h1 = h2 = 0 with steps of least length, at most 50
     /// of them.
     pub(crate) fn start<P: Path<T> + ?Sized>(
@@ -158,8 +165,7 @@ impl<T: Real> Approach<T> {
         path.engage(position);
         let nearest = nearest_point(path, position)?;
         path.engage(&nearest);
-        let outputs = path.outputs(&[nearest.x, nearest.y, nearest.z].map(Series::constant));
-        let [g1, g2] = &outputs.gradients;
+        let outputs = at_rest(path, &nearest);
         let shortest = T::lit(SHORTEST);
         let braking = limits.braking(vehicle, length(velocity)).max(shortest);
         let displacement = position - nearest + velocity * (braking * T::lit(0.5));
@@ -167,7 +173,7 @@ impl<T: Real> Approach<T> {
         Some(Self {
             displacement,
             velocity: *velocity,
-            path_det: g1.cross(g2).dot(&outputs.tangent),
+            path_det: determinant(&outputs),
             speed: outputs.speed_error.value(),
             yaw: (Yaw::of(state).angle - outputs.yaw.value()).wrap_angle(),
             elapsed: T::zero(),
@@ -201,6 +207,17 @@ impl<T: Real> Approach<T> {
         if self.is_active() {
             self.elapsed += period;
         }
+    }
+
+    /// S of the slide and E of the brake, about `elapsed` s.
+    #[inline(never)]
+    fn profiles(&self, elapsed: T) -> (Series<T, 7>, Series<T, 7>) {
+        let (slide, _) = profile(elapsed - self.braking, self.sliding);
+        let (brake, area) = profile(elapsed, self.braking);
+        // E: its derivative is the brake's S.
+        let Series([b0, b1, b2, b3, b4, b5, _]) = brake;
+        let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
+        (slide, Series([-area, b0, b1 * c2, b2 * c3, b3 * c4, b4 * c5, b5 * c6]))
     }
 
     /// `path` as displaced `ahead` s from now.
@@ -244,29 +261,38 @@ pub(crate) struct Displaced<'a, T, P: ?Sized> {
 }
 
 impl<T: Real, P: Path<T> + ?Sized> Path<T> for Displaced<'_, T, P> {
-    #[inline]
+    #[inline(always)]
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
         let Approach { displacement, velocity, speed, yaw, braking, sliding, .. } = self.approach;
-        if self.elapsed >= *braking + *sliding {
-            return self.path.outputs(position);
+        let under_way = self.elapsed < *braking + *sliding;
+        let mut home = *position;
+        let mut fading = Series::constant(T::zero());
+        if under_way {
+            let (slide, brake) = self.approach.profiles(self.elapsed);
+            for ((coordinate, &d), &v) in home.iter_mut().zip(displacement).zip(velocity) {
+                *coordinate = *coordinate - slide * d - brake * v;
+            }
+            fading = slide;
         }
-        let (slide, _) = profile(self.elapsed - *braking, *sliding);
-        let (brake, area) = profile(self.elapsed, *braking);
-        // E: its derivative is the brake's S.
-        let Series([b0, b1, b2, b3, b4, b5, _]) = brake;
-        let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
-        let brake = Series([-area, b0, b1 * c2, b2 * c3, b3 * c4, b4 * c5, b5 * c6]);
-        let [x, y, z] = position;
-        let home = [
-            *x - slide * displacement.x - brake * velocity.x,
-            *y - slide * displacement.y - brake * velocity.y,
-            *z - slide * displacement.z - brake * velocity.z,
-        ];
         let mut outputs = self.path.outputs(&home);
-        outputs.speed_error = outputs.speed_error - slide.truncate() * *speed;
-        outputs.yaw += slide.truncate() * *yaw;
+        if under_way {
+            outputs.speed_error = outputs.speed_error - fading.truncate() * *speed;
+            outputs.yaw += fading.truncate() * *yaw;
+        }
         outputs
     }
+}
+
+/// The outputs for a payload at rest. Apart from the law's own evaluation, which is inlined into the step.
+#[inline(never)]
+fn at_rest<T: Real, P: Path<T> + ?Sized>(path: &mut P, point: &Vector3<T>) -> Outputs<T> {
+    path.outputs(&[point.x, point.y, point.z].map(Series::constant))
+}
+
+/// (∇h1 × ∇h2)·ρ.
+fn determinant<T: Real>(outputs: &Outputs<T>) -> T {
+    let [g1, g2] = &outputs.gradients;
+    g1.cross(g2).dot(&outputs.tangent)
 }
 
 /// A point of the path near `position`.
@@ -278,7 +304,7 @@ fn nearest_point<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<
     let close = T::lit(1e-4);
     let mut point = *position;
     for _ in 0..STEPS {
-        let outputs = path.outputs(&[point.x, point.y, point.z].map(Series::constant));
+        let outputs = at_rest(path, &point);
         let [h1, h2] = outputs.surfaces.map(|h| h.value());
         let [g1, g2] = &outputs.gradients;
         let (a, b, c) = (g1.dot(g1), g1.dot(g2), g2.dot(g2));

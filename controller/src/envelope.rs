@@ -23,14 +23,6 @@ pub struct Margins<T> {
     pub cos_phi_squared: T,
 }
 
-impl<T: Real> Margins<T> {
-    /// As at hover, for commands that no law made.
-    pub(crate) fn at_hover() -> Self {
-        let one = T::one();
-        Self { q3: one, q_b3: one, lambda: -one, kappa: one, path_det: one, reach: one, cos_phi_squared: one }
-    }
-}
-
 /// Which margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -113,8 +105,16 @@ pub enum Standing {
 #[derive(Clone, Copy, Debug)]
 struct Threshold<T> {
     margin: Margin,
-    warning: T,
     limit: T,
+    /// 1/(warning − limit).
+    per_band: T,
+}
+
+impl<T: Real> Threshold<T> {
+    fn new(margin: Margin, warning: T, limit: T) -> Self {
+        // Without a band between the two, a warning is hardly ever due.
+        Self { margin, limit, per_band: T::one() / (warning - limit).max(T::lit(1e-6)) }
+    }
 }
 
 /// An envelope whose parameters are in range.
@@ -126,41 +126,38 @@ pub struct Envelope<T> {
 impl<T: Real> Envelope<T> {
     /// Checks every parameter; an error names the first that is out of range.
     pub fn new(vehicle: &Vehicle<T>, params: &EnvelopeParams<T>) -> Result<Self, OutOfRange<T>> {
-        let angle = |margin, field, band: &Band<T>| {
+        let cosines = |field, band: &Band<T>| {
             OutOfRange::check(field, band.limit, 0.05, 1.5)?;
-            OutOfRange::check(field, band.warning, 0.0, band.limit.to_f64())?;
+            OutOfRange::within(field, band.warning, T::zero(), band.limit)?;
             let (_, warning) = band.warning.sin_cos();
             let (_, limit) = band.limit.sin_cos();
-            Ok(Threshold { margin, warning, limit })
+            Ok((warning, limit))
         };
         let least = |margin, field, band: &Band<T>, largest: T, unit: T| {
-            OutOfRange::check(field, band.limit, 0.0, largest.to_f64())?;
-            OutOfRange::check(field, band.warning, band.limit.to_f64(), largest.to_f64())?;
-            Ok(Threshold { margin, warning: band.warning * unit, limit: band.limit * unit })
-        };
-        let squared = |threshold: Threshold<T>| Threshold {
-            warning: threshold.warning * threshold.warning,
-            limit: threshold.limit * threshold.limit,
-            ..threshold
+            OutOfRange::within(field, band.limit, T::zero(), largest)?;
+            OutOfRange::within(field, band.warning, band.limit, largest)?;
+            Ok(Threshold::new(margin, band.warning * unit, band.limit * unit))
         };
         let one = T::one();
         let payload = vehicle.params().payload_mass;
         let weight = payload * vehicle.params().gravity;
+        let rod = cosines("rod_angle", &params.rod_angle)?;
+        let thrust = cosines("thrust_angle", &params.thrust_angle)?;
+        let roll = cosines("roll", &params.roll)?;
         Ok(Self {
             thresholds: [
-                angle(Margin::RodAngle, "rod_angle", &params.rod_angle)?,
-                angle(Margin::ThrustAngle, "thrust_angle", &params.thrust_angle)?,
+                Threshold::new(Margin::RodAngle, rod.0, rod.1),
+                Threshold::new(Margin::ThrustAngle, thrust.0, thrust.1),
                 least(Margin::Tension, "tension", &params.tension, weight, one / payload)?,
                 least(Margin::Thrust, "thrust", &params.thrust, vehicle.hover_thrust(), vehicle.kappa_per_thrust)?,
                 least(Margin::Path, "path", &params.path, one, one)?,
                 least(Margin::Reach, "reach", &params.reach, one, one)?,
-                squared(angle(Margin::Yaw, "roll", &params.roll)?),
+                Threshold::new(Margin::Yaw, roll.0 * roll.0, roll.1 * roll.1),
             ],
         })
     }
 
-    /// How `margins` stand, with the determinant of the path's system as a share of `path_det`, its value on the path. What is not a number
-    /// is beyond.
+    /// How `margins` stand by the least of them, with the determinant of the path's system as a share of `path_det`, its value on the path.
     #[inline]
     pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
         let values = [
@@ -172,17 +169,20 @@ impl<T: Real> Envelope<T> {
             margins.reach,
             margins.cos_phi_squared,
         ];
-        let mut standing = Standing::Inside;
+        // 1 at the warning and 0 at the limit.
+        let (mut least, mut margin) = (T::one(), Margin::RodAngle);
         for (value, threshold) in values.into_iter().zip(&self.thresholds) {
-            if value >= threshold.warning {
-                continue;
-            }
-            if value >= threshold.limit {
-                standing = Standing::Warning(threshold.margin);
-            } else {
-                return Standing::Beyond(threshold.margin);
+            let share = (value - threshold.limit) * threshold.per_band;
+            if share < least {
+                (least, margin) = (share, threshold.margin);
             }
         }
-        standing
+        if least >= T::one() {
+            Standing::Inside
+        } else if least >= T::zero() {
+            Standing::Warning(margin)
+        } else {
+            Standing::Beyond(margin)
+        }
     }
 }

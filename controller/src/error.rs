@@ -20,7 +20,11 @@ pub struct OutOfRange<T> {
 impl<T: Real> OutOfRange<T> {
     /// `Ok` if `min` ≤ `value` ≤ `max`, which a NaN is not.
     pub fn check(field: &'static str, value: T, min: f64, max: f64) -> Result<(), Self> {
-        let (min, max) = (T::lit(min), T::lit(max));
+        Self::within(field, value, T::lit(min), T::lit(max))
+    }
+
+    /// The same with bounds that come from other parameters.
+    pub fn within(field: &'static str, value: T, min: T, max: T) -> Result<(), Self> {
         if value >= min && value <= max { Ok(()) } else { Err(Self { field, value, min, max }) }
     }
 }

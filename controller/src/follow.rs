@@ -75,7 +75,8 @@ pub struct Solution<T, X> {
 }
 
 /// Evaluates the law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance as they are, without looking ahead.
-#[inline]
+// Inlined wherever it is called: its answer is then made in place, and the lift stays in registers.
+#[inline(always)]
 pub fn law<T: Real, P: Path<T> + ?Sized>(
     vehicle: &Vehicle<T>,
     path: &mut P,
@@ -243,9 +244,8 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     }
 
     fn begin(&mut self, state: &State<T>) {
-        self.path.engage(&state.position);
         self.integral = [T::zero(); 3];
-        self.approach = Approach::none();
+        self.approach = Approach::at(&mut self.path, &state.position);
     }
 
     /// The command for the coming hold, from the state sampled now. Call once every period.
@@ -260,7 +260,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     }
 
     /// The law's answer for the coming hold.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn evaluate(&mut self, ahead: &Ahead<T>) -> Solution<T, Xi<T>> {
         let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
         let Ahead { state, zeta, disturbance } = ahead;
@@ -268,7 +268,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     }
 
     /// Takes an answer: limits and sends its command, and moves on by a period.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn accept(&mut self, solution: &Solution<T, Xi<T>>) -> Command<T> {
         let period = self.sampler.period();
         self.approach.advance(period);
@@ -276,7 +276,8 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
         for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
             *integral += period * h;
         }
-        self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins)
+        let Solution { command, u_zeta, margins, .. } = solution;
+        self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3)
     }
 
     pub(crate) fn sampler(&mut self) -> &mut Sampler<T> {

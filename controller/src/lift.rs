@@ -66,7 +66,7 @@ impl<T: Real> Lift<T> {
 /// Lifts `state` and the compensator's ζ = (v̇3, v̈3, …), m/s²⁺ᵏ, to the payload's series.
 ///
 /// Needs |`rod`| = 1, `rod_rate` ⊥ `rod` and an orthonormal attitude.
-#[inline]
+#[inline(always)]
 pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], disturbance: &Disturbance<T>) -> Lift<T> {
     let (d, delta) = (&disturbance.payload, &disturbance.rod);
     let two = T::lit(2.0);

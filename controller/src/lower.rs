@@ -20,7 +20,7 @@ use crate::yaw::Yaw;
 
 /// The torque τ in body axes, N·m, that with u_ζ = p⁽⁶⁾·e3 gives the payload the sixth derivative `position_6`
 /// (N, m/s⁶) and the UAV the yaw acceleration `yaw_2`, rad/s², against `disturbing_torque`.
-#[inline]
+#[inline(always)]
 pub fn lower<T: Real>(
     vehicle: &Vehicle<T>,
     state: &State<T>,

@@ -10,7 +10,6 @@ use nalgebra::Vector3;
 use crate::actuator::{ActuatorLimits, Actuators};
 use crate::compensator::{Command, continuing, propagate};
 use crate::disturbance::{Disturbance, Observer, ObserverParams};
-use crate::envelope::Margins;
 use crate::error::OutOfRange;
 use crate::lift::lift;
 use crate::model::Model;
@@ -201,18 +200,18 @@ impl<T: Real> Sampler<T> {
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
     ///
-    /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference, so that the compensator stands for the motion
+    /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference with `alignment` = (q·e3)(q·b3), so that the compensator stands for the motion
     /// that the applied thrust gives.
     #[inline]
-    pub(crate) fn hold(&mut self, command: &Command<T>, u_zeta: T, margins: &Margins<T>) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(command));
+    pub(crate) fn hold(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
+        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(&command));
         self.bump = Some(bump.times(self.fade));
         let smooth = command.plus(&bump);
         let applied = self.limits.limit(&smooth);
         self.actuators.push(applied);
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
         let missing = command.thrust - applied.thrust;
-        self.zeta[0] += missing * margins.q3 * margins.q_b3 * self.vehicle.per_total_mass;
+        self.zeta[0] += missing * alignment * self.vehicle.per_total_mass;
         self.u_zeta = u_zeta;
         applied
     }

@@ -19,7 +19,7 @@
 use crate::approach::ApproachLimits;
 use crate::compensator::Command;
 use crate::disturbance::Disturbance;
-use crate::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
+use crate::envelope::{Envelope, EnvelopeParams, Margin, Standing};
 use crate::error::OutOfRange;
 use crate::follow::{Follower, Solution, Xi};
 use crate::hold::Hold;
@@ -82,13 +82,12 @@ pub enum Fault {
 }
 
 /// What to do without a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Lost {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lost<T> {
     /// Cut the rotors; only [`Request::Off`] leaves the fault.
     Cut,
-    /// Sink with this share of the hover thrust (per cent) and no torque; a good state again leads to hold.
-    Sink(u8),
+    /// Sink with this share of the hover thrust, 0 to 1, and no torque; a good state again leads to hold.
+    Sink(T),
 }
 
 /// What is done when.
@@ -97,7 +96,7 @@ pub struct Policy<T> {
     /// How long the last command goes on without a good state, s.
     pub coast: T,
     /// What comes after that.
-    pub lost: Lost,
+    pub lost: Lost<T>,
     /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the vehicle has been calm.
     pub resume: bool,
     /// For how long it has to have been, s.
@@ -113,7 +112,7 @@ impl<T: Real> Default for Policy<T> {
     fn default() -> Self {
         Self {
             coast: T::lit(0.1),
-            lost: Lost::Sink(90),
+            lost: Lost::Sink(T::lit(0.9)),
             resume: true,
             calm: T::one(),
             descent: T::lit(0.5),
@@ -130,7 +129,7 @@ impl<T: Real> Policy<T> {
         OutOfRange::check("payload_lost", self.payload_lost, -1.0, 0.95)?;
         match self.lost {
             Lost::Cut => Ok(()),
-            Lost::Sink(share) => OutOfRange::check("lost", T::lit(f64::from(share)), 0.0, 100.0),
+            Lost::Sink(share) => OutOfRange::check("lost", share, 0.0, 1.0),
         }
     }
 }
@@ -213,6 +212,14 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         }
     }
 
+    /// Starts on the path, from a stated ζ: [`Mode::Follow`] without an approach.
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
+        self.follower.start(state, zeta);
+        self.request = Request::Follow;
+        self.fault = None;
+        self.mode = Mode::Follow;
+    }
+
     /// The command for the coming hold. Call once every period, with the state sampled now and what the pilot wants.
     #[inline]
     pub fn step(&mut self, sampled: &State<T>, request: Request) -> Output<T> {
@@ -247,7 +254,10 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
                 self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
             }
             Mode::Engage | Mode::Follow => self.following(sampled),
-            Mode::Hold | Mode::Land | Mode::Fault => self.holding(sampled, None),
+            Mode::Hold | Mode::Land | Mode::Fault => {
+                let ahead = self.follower.sampler().ahead(sampled);
+                self.holding(sampled, &ahead.state)
+            }
         }
     }
 
@@ -256,12 +266,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         match (self.mode, self.request) {
             (Mode::Off, Request::Idle | Request::Follow | Request::Hold) => self.mode = Mode::Idle,
             (Mode::Idle, Request::Follow) | (Mode::Hold, Request::Follow) if self.may_follow() => {
-                if self.follower.rejoin(sampled, &self.approach) {
-                    self.mode = Mode::Engage;
-                } else {
-                    self.enter_hold(sampled, Some(Fault::NoPath));
-                    self.calm = T::zero();
-                }
+                self.engage(sampled);
             }
             (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Land, Request::Hold)
             | (Mode::Engage | Mode::Follow | Mode::Land, Request::Idle)
@@ -279,12 +284,22 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         }
     }
 
+    #[cold]
+    fn engage(&mut self, sampled: &State<T>) {
+        if self.follower.rejoin(sampled, &self.approach) {
+            self.mode = Mode::Engage;
+        } else {
+            self.enter_hold(sampled, Some(Fault::NoPath));
+        }
+    }
+
     fn may_follow(&self) -> bool {
         self.fault != Some(Fault::PayloadLost)
             && self.calm >= self.policy.calm
             && (self.policy.resume || self.fault.is_none())
     }
 
+    #[cold]
     fn enter_hold(&mut self, sampled: &State<T>, fault: Option<Fault>) {
         self.hold = Hold::from(self.follower.vehicle(), sampled);
         self.follower.sampler().soften();
@@ -294,7 +309,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
     }
 
     /// The law's command, if its answer can be flown; hold's, if not.
-    #[inline]
+    #[inline(always)]
     fn following(&mut self, sampled: &State<T>) -> Output<T> {
         let ahead = self.follower.sampler().ahead(sampled);
         let solution = self.follower.evaluate(&ahead);
@@ -310,24 +325,24 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         };
         if fault.is_some() {
             self.enter_hold(sampled, fault);
-            return self.holding(sampled, Some(solution));
+            return self.holding(sampled, sampled);
         }
         let command = self.follower.accept(&solution);
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
         Output { command, mode: self.mode, fault: self.fault, warning, solution: Some(solution) }
     }
 
-    /// Hold's command. `solution` is the law's answer that led here: then the observers have seen `sampled` already.
-    fn holding(&mut self, sampled: &State<T>, solution: Option<Solution<T, Xi<T>>>) -> Output<T> {
+    /// Hold's command for when it acts, at `state`, from what is `sampled` now.
+    #[cold]
+    fn holding(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
         let vehicle = *self.follower.vehicle();
         let sampler = self.follower.sampler();
-        let state = if solution.is_some() { *sampled } else { sampler.ahead(sampled).state };
         let period = sampler.period();
         let params = vehicle.params();
         let implied = sampler.implied_payload_mass(sampled);
         let mass = params.uav_mass + implied.clamp(T::zero(), params.payload_mass * T::lit(4.0));
         let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
-        let wanted = self.hold.step(&vehicle, &state, mass, descent, period);
+        let wanted = self.hold.step(&vehicle, state, mass, descent, period);
         if self.mode == Mode::Land && self.hold.left_above(&vehicle, sampled) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
@@ -337,17 +352,19 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
             && swing.dot(&swing) < T::lit(CALM_SWING * CALM_SWING)
             && sampled.attitude.m33 > T::lit(CALM_TILT);
         self.calm = if is_calm { self.calm + period } else { T::zero() };
-        let command = self.follower.sampler().hold(&wanted, T::zero(), &Margins::at_hover());
-        Output { command, mode: self.mode, fault: self.fault, warning: None, solution }
+        let command = self.follower.sampler().hold(wanted, T::zero(), T::zero());
+        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
     }
 
     /// A command that needs no law.
+    #[cold]
     fn grounded(&mut self, sampled: &State<T>, command: Command<T>) -> Output<T> {
         self.follower.sampler().engage(sampled, command);
         Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
     }
 
     /// A step without a good state.
+    #[cold]
     fn without_state(&mut self, channel: Channel) -> Output<T> {
         self.fault = Some(Fault::State(channel));
         let hover = self.follower.vehicle().hover_thrust();
@@ -364,10 +381,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
                 self.mode = Mode::Fault;
                 match self.policy.lost {
                     Lost::Cut => Command::zero(),
-                    Lost::Sink(share) => {
-                        let thrust = hover * T::lit(f64::from(share) * 0.01);
-                        sampler.send(&Command { thrust, torque: Vector3::zeros() })
-                    }
+                    Lost::Sink(share) => sampler.send(&Command { thrust: hover * share, torque: Vector3::zeros() }),
                 }
             }
         };

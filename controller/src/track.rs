@@ -80,7 +80,7 @@ pub struct TrackXi<T> {
 }
 
 /// Evaluates the tracking law at `state`, ζ and a known disturbance as they are.
-#[inline]
+#[inline(always)]
 pub fn law<T: Real>(
     vehicle: &Vehicle<T>,
     gains: &TrackGains<T>,
@@ -178,7 +178,8 @@ impl<T: Real> Tracker<T> {
         let reference = reference.shift(self.sampler.horizon());
         let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
         let mut solution = law(self.sampler.vehicle(), &self.gains, &reference, &state, &zeta, &disturbance);
-        solution.command = self.sampler.hold(&solution.command, solution.u_zeta, &solution.margins);
+        solution.command =
+            self.sampler.hold(solution.command, solution.u_zeta, solution.margins.q3 * solution.margins.q_b3);
         solution
     }
 

@@ -96,7 +96,7 @@ where
     S: SpeedProfile<T, C>,
     Y: YawProfile<T>,
 {
-    #[inline]
+    #[inline(always)]
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
         let located = self.curve.locate(position);
         Outputs {

@@ -30,12 +30,13 @@ pub struct Probe {
     overhead: u32,
 }
 
-/// A call to be measured: reads and changes `A`, reads `B`, writes `C`.
-pub type Call<A, B, C> = extern "C" fn(&mut A, &B, &mut MaybeUninit<C>);
+/// A call to be measured: reads and changes `A`, reads `B`, and returns a `C` of more than four words, which the calling convention has it
+/// write where the first register points.
+pub type Call<A, B, C> = extern "C" fn(&mut A, &B) -> C;
 
 /// Nothing but the return.
 #[unsafe(naked)]
-extern "C" fn nothing(_: &mut (), _: &(), _: &mut MaybeUninit<()>) {
+extern "C" fn nothing(_: &mut (), _: &()) -> [u32; 5] {
     core::arch::naked_asm!("bx lr")
 }
 
@@ -57,10 +58,11 @@ impl Probe {
     /// Calls `f` and returns what it wrote, and its cost.
     #[inline(never)]
     pub fn measure<A, B, C>(&self, f: Call<A, B, C>, a: &mut A, b: &B) -> (C, Cost) {
-        let mut output = MaybeUninit::<C>::uninit();
+        let mut output = MaybeUninit::<C>::zeroed();
         let paint = paint();
         let (start, end, sp): (u32, u32, usize);
-        // SAFETY: a call of an extern "C" function with its three pointers, all of them live; the clobbers are those of the
+        const { assert!(size_of::<C>() > 16) };
+        // SAFETY: a call of an extern "C" function with its result's and its arguments' pointers, all of them live; the clobbers are those of the
         // calling convention, and what outlives the call is declared an early output, so kept out of them.
         unsafe {
             asm!(
@@ -71,9 +73,9 @@ impl Probe {
                 out("r4") sp,
                 out("r5") start,
                 inout("r8") &raw const (*SYST::PTR).cvr => end,
-                inlateout("r0") &raw mut *a => _,
-                inlateout("r1") &raw const *b => _,
-                inlateout("r2") &raw mut output => _,
+                inlateout("r0") &raw mut output => _,
+                inlateout("r1") &raw mut *a => _,
+                inlateout("r2") &raw const *b => _,
                 inlateout("r3") f => _,
                 out("r12") _, out("lr") _,
                 out("d0") _, out("d1") _, out("d2") _, out("d3") _,
@@ -83,7 +85,7 @@ impl Probe {
         let ticks = start.wrapping_sub(end) & COUNTER;
         let instructions = (ticks * TICKS.1 + TICKS.0 / 2) / TICKS.0;
         let stack_bytes = sp.saturating_sub(lowest_touched(paint)) as u32;
-        // SAFETY: every `Call` that is measured writes its output.
+        // SAFETY: every `Call` writes its result, and all zeros is what the empty one's is.
         let output = unsafe { output.assume_init() };
         (output, Cost { instructions: instructions - self.overhead, stack_bytes })
     }

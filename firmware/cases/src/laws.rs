@@ -2,10 +2,12 @@
 
 use controller::path::Path;
 use controller::{
-    Command, Follower, Gains, Matrix3, Pole, Real, Reference, Sampling, Solution, State, TrackGains, TrackXi,
-    Tracker, Vector3, Vehicle, VehicleParams, Xi, place,
+    ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follower, Gains, Matrix3, ObserverParams, Output, Pole,
+    Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
+    Vehicle, VehicleParams, place,
 };
 
+use crate::paths::on_circle;
 use crate::{Case, Digest, Random};
 
 /// Control period, s.
@@ -16,11 +18,13 @@ const YAW_POLES: [f32; 2] = [-2.0, -3.0];
 /// Of h1, h2, h3: far below what those poles allow.
 const INTEGRAL: [f32; 3] = [100.0, 100.0, 10.0];
 
-/// A path-following law, and where its states are drawn.
+/// A supervised path-following law as it flies, observers, guard and limits on, and where its states are drawn.
 pub struct Following<P> {
-    follower: Follower<f32, P>,
+    supervisor: Supervisor<f32, P>,
     /// Draws a point of the path.
     on_path: fn(&mut Random) -> Vector3<f32>,
+    /// On the way to the path rather than on it.
+    joining: bool,
 }
 
 impl<P: Path<f32>> Following<P> {
@@ -36,27 +40,50 @@ impl<P: Path<f32>> Following<P> {
             integral: INTEGRAL,
         };
         let vehicle = Vehicle::new(VehicleParams::default()).ok()?;
-        let follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD)).ok()?;
-        Some(Self { follower, on_path })
+        let limits = ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] };
+        let follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD))
+            .and_then(|follower| follower.with_limits(limits))
+            .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(4.0)))
+            .ok()?;
+        let approach = ApproachLimits::gentle(&vehicle);
+        let envelope = EnvelopeParams::wide(&vehicle);
+        let supervisor = Supervisor::new(follower, &envelope, approach, Policy::default()).ok()?;
+        Some(Self { supervisor, on_path, joining: false })
+    }
+
+    /// The same, on its way to the path.
+    pub fn joining(self) -> Self {
+        Self { joining: true, ..self }
     }
 }
 
 impl<P: Path<f32>> Case for Following<P> {
     type State = State<f32>;
-    type Output = Solution<f32, Xi<f32>>;
+    type Output = Output<f32>;
 
     fn prepare(&mut self, random: &mut Random) -> State<f32> {
         let state = state_near((self.on_path)(random), random);
-        self.follower.start(&state, zeta(random));
+        let zeta = zeta(random);
+        if self.joining {
+            let hover =
+                Command { thrust: self.supervisor.follower().vehicle().hover_thrust(), torque: Vector3::zeros() };
+            self.supervisor.take_over(&state, hover);
+            self.supervisor.step(&state, Request::Follow);
+        } else {
+            self.supervisor.start(&state, zeta);
+        }
         state
     }
 
     fn step(&mut self, state: &State<f32>) -> Self::Output {
-        self.follower.step(state)
+        self.supervisor.step(state, Request::Follow)
     }
 
     fn digest(output: &Self::Output, digest: &mut Digest) {
-        digest_solution(output, digest);
+        digest_command(&output.command, digest);
+        if let Some(solution) = &output.solution {
+            digest_solution(solution, digest);
+        }
     }
 }
 
@@ -94,12 +121,6 @@ impl Case for Tracking {
     }
 }
 
-/// A point of the circle of radius 5 m at p3 = −10 m.
-pub fn on_circle(random: &mut Random) -> Vector3<f32> {
-    let (sin, cos) = random.around_zero(core::f32::consts::PI).sin_cos();
-    Vector3::new(5.0 * cos, 5.0 * sin, -10.0)
-}
-
 /// A flyable state around `point`: 1 m and 1.5 m/s off, rod and attitude some 0.4 rad from upright, any yaw.
 fn state_near(point: Vector3<f32>, random: &mut Random) -> State<f32> {
     let rod = unit(Vector3::new(0.0, 0.0, 1.0) + random.vector(0.4));
@@ -125,8 +146,11 @@ fn zeta(random: &mut Random) -> [f32; 4] {
     [1.0, 1.0, 2.0, 4.0].map(|amplitude| random.around_zero(amplitude))
 }
 
+fn digest_command(command: &Command<f32>, digest: &mut Digest) {
+    [command.thrust].iter().chain(&command.torque).for_each(|&number| digest.take(number));
+}
+
 fn digest_solution<X>(solution: &Solution<f32, X>, digest: &mut Digest) {
-    let Command { thrust, torque } = &solution.command;
-    let all = [*thrust, solution.u_zeta].into_iter().chain(torque.iter().copied()).chain(solution.nu);
-    all.for_each(|number| digest.take(number));
+    digest_command(&solution.command, digest);
+    [solution.u_zeta].into_iter().chain(solution.nu).for_each(|number| digest.take(number));
 }

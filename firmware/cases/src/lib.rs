@@ -4,10 +4,10 @@
 
 mod digest;
 mod laws;
+mod paths;
 mod random;
 
-use controller::Circle;
-use laws::{Following, Tracking, on_circle};
+use laws::{Following, Tracking};
 
 pub use digest::Digest;
 pub use random::Random;
@@ -38,8 +38,12 @@ pub trait Visitor {
 
 /// Shows `visitor` all cases, one a line.
 pub fn visit_all(visitor: &mut impl Visitor) {
-    let circle = Circle::new(5.0, -10.0).map(|circle| circle.at_speed(1.0));
-    visitor.visit("circle", circle.ok().and_then(|path| Following::new(path, on_circle)));
+    visitor.visit("circle", paths::circle().and_then(|path| Following::new(path, paths::on_circle)));
+    visitor.visit("ellipse", paths::ellipse().and_then(|path| Following::new(path, paths::on_ellipse)));
+    visitor.visit("bent", paths::bent().and_then(|path| Following::new(path, paths::on_bent)));
+    visitor.visit("fourier8", paths::fourier8().and_then(|path| Following::new(path, paths::on_fourier8)));
+    let joining = |path| Following::new(path, paths::on_circle).map(Following::joining);
+    visitor.visit("joining", paths::circle().and_then(joining));
     visitor.visit("track", Tracking::new());
 }
 
