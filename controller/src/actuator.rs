@@ -1,11 +1,25 @@
-//! The actuators as the law knows them: limits, a known latency and a known first-order lag.
+//! The actuators as the law knows them: what they can apply, a known latency and a known first-order lag.
 
 use crate::compensator::Command;
 use crate::error::OutOfRange;
 use crate::scalar::Real;
 use nalgebra::Vector3;
 
-/// What may be commanded.
+/// What turns a command into thrust and torque. The law's memory goes on from what it says was applied, so nothing winds up.
+///
+/// [`ActuatorLimits`] is a box; [`Rotors`](crate::allocation::Rotors) is a set of rotors.
+pub trait Actuation<T: Real>: Clone {
+    /// `Ok` if every parameter is in range.
+    fn check(&self) -> Result<(), OutOfRange<T>>;
+
+    /// What is applied when `command` is asked for: finite for every finite command.
+    fn apply(&self, command: &Command<T>) -> Command<T>;
+
+    /// The least thrust, N, not below zero: what an armed vehicle applies on the ground.
+    fn least_thrust(&self) -> T;
+}
+
+/// Thrust and each torque, limited on their own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorLimits<T> {
     /// Least thrust, N.
@@ -22,8 +36,10 @@ impl<T: Real> ActuatorLimits<T> {
         let far = T::lit(1e6);
         Self { min_thrust: -far, max_thrust: far, max_torque: [far; 3] }
     }
+}
 
-    pub(crate) fn check(&self) -> Result<(), OutOfRange<T>> {
+impl<T: Real> Actuation<T> for ActuatorLimits<T> {
+    fn check(&self) -> Result<(), OutOfRange<T>> {
         OutOfRange::check("min_thrust", self.min_thrust, -1e6, 1e6)?;
         OutOfRange::within("max_thrust", self.max_thrust, self.min_thrust, T::lit(1e6))?;
         let [t1, t2, t3] = self.max_torque;
@@ -34,13 +50,17 @@ impl<T: Real> ActuatorLimits<T> {
 
     /// The nearest allowed command.
     #[inline]
-    pub fn limit(&self, command: &Command<T>) -> Command<T> {
+    fn apply(&self, command: &Command<T>) -> Command<T> {
         let [t1, t2, t3] = self.max_torque;
         let torque = &command.torque;
         Command {
             thrust: command.thrust.clamp(self.min_thrust, self.max_thrust),
             torque: Vector3::new(torque.x.clamp(-t1, t1), torque.y.clamp(-t2, t2), torque.z.clamp(-t3, t3)),
         }
+    }
+
+    fn least_thrust(&self) -> T {
+        self.min_thrust.max(T::zero())
     }
 }
 

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-use crate::actuator::ActuatorLimits;
+use crate::actuator::{Actuation, ActuatorLimits};
 use crate::approach::{Approach, ApproachLimits};
 use crate::compensator::Command;
 use crate::disturbance::{Disturbance, ObserverParams};
@@ -176,12 +176,12 @@ impl<T: Real> core::error::Error for SetupError<T> {}
 
 /// The path-following controller: the law at a fixed rate.
 #[derive(Clone, Debug)]
-pub struct Follower<T, P> {
+pub struct Follower<T, P, A = ActuatorLimits<T>> {
     path: P,
     gains: Gains<T>,
     integral: [T; 3],
     approach: Approach<T>,
-    sampler: Sampler<T>,
+    sampler: Sampler<T, A>,
 }
 
 impl<T: Real, P: Path<T>> Follower<T, P> {
@@ -200,15 +200,32 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
         Ok(Self { path, gains, integral: [T::zero(); 3], approach: Approach::none(), sampler })
     }
 
+    /// With limits on what is commanded.
+    pub fn with_limits(self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
+        self.with_actuation(limits)
+    }
+}
+
+impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
+    /// With `actuation` in place of the one it has: [`Rotors`](crate::allocation::Rotors), say.
+    pub fn with_actuation<B: Actuation<T>>(self, actuation: B) -> Result<Follower<T, P, B>, SetupError<T>> {
+        let Self { path, gains, integral, approach, sampler } = self;
+        Ok(Follower { path, gains, integral, approach, sampler: sampler.with_actuation(actuation)? })
+    }
+
+    /// Changes what the actuators can apply, in flight too.
+    pub fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
+        self.sampler.set_actuation(actuation)
+    }
+
+    /// What turns its commands into thrust and torque.
+    pub fn actuation(&self) -> &A {
+        self.sampler.actuation()
+    }
+
     /// With disturbance observers, reset.
     pub fn with_observer(mut self, params: &ObserverParams<T>) -> Result<Self, SetupError<T>> {
         self.sampler.set_observer(params)?;
-        Ok(self)
-    }
-
-    /// With limits on what is commanded.
-    pub fn with_limits(mut self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
-        self.sampler.set_limits(limits)?;
         Ok(self)
     }
 
@@ -272,15 +289,19 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
     pub(crate) fn accept(&mut self, solution: &Solution<T, Xi<T>>) -> Command<T> {
         let period = self.sampler.period();
         self.approach.advance(period);
-        let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
-        for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
-            *integral += period * h;
-        }
         let Solution { command, u_zeta, margins, .. } = solution;
-        self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3)
+        let applied = self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3);
+        // What the actuators can't give, no integral may ask for ever louder.
+        if !self.sampler.is_saturated() {
+            let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
+            for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
+                *integral += period * h;
+            }
+        }
+        applied
     }
 
-    pub(crate) fn sampler(&mut self) -> &mut Sampler<T> {
+    pub(crate) fn sampler(&mut self) -> &mut Sampler<T, A> {
         &mut self.sampler
     }
 

@@ -1,24 +1,26 @@
 //! The law to fall back on: brings UAV and payload to rest and keeps their altitude, from any state whatever.
 //!
-//! It steers the UAV, at r = p − L q, as a point with a load it does not model, and divides by nothing that can vanish:
+//! It steers the UAV, at r = p − L q, and divides by nothing that can vanish. With D = d − L δ the disturbances' part in r̈, model (1) solved for the force
+//! f = T b3 that gives the UAV an acceleration a is
 //!
 //! ```text
-//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇     (the last: yield to the swing, which damps it)
-//! f = M (g e3 − a), limited to a cone about e3;   T = f·b3
-//! ω̇ = k_R e3 × Rᵀf/|f| − k_ω ω
+//! f = m_Q u + m_L (q·u) q,   u = g e3 + D − a + (m_L/M) L |q̇|² q
+//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇     (the last, level: yield to the swing, which damps it)
+//! ω̇ = k_R θ − k_ω ω,   T = f·b3,   f within a cone about e3, θ the rotation from b3 to it
 //! ```
 //!
-//! The target r* starts at the UAV and at its velocity, which it loses within [`BRAKING`]. M is the mass that the disturbance observer implies, so
-//! the load may have been dropped.
+//! so the rod's pull on the UAV is made good whatever its direction, up to the thrust there is. The target r* starts at the UAV and at its level
+//! velocity, which it loses within [`BRAKING`]; a fall is stopped as hard as the rotors can.
 
 use nalgebra::Vector3;
 
 use crate::compensator::Command;
+use crate::disturbance::Disturbance;
 use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
-/// Time constant with which the target loses the UAV's velocity, s.
+/// Time constant with which the target loses the UAV's level velocity, s.
 const BRAKING: f64 = 1.0;
 /// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles near −0.5, −0.75 ± 0.2 j.
 const POSITION_GAIN: f64 = 1.0;
@@ -28,15 +30,21 @@ const INTEGRAL_GAIN: f64 = 0.3;
 const SWING_GAIN: f64 = 0.8;
 /// Largest position error that counts, m, and largest integral, m/s².
 const REACH: f64 = 2.0;
+/// Faster than this the integral waits: what is going on is no steady error, m/s.
+const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
+/// Fastest swing that is yielded to, m/s.
+const LARGEST_SWING: f64 = 2.0;
+/// Largest disturbance that is made good, as a share of g: estimates of a tumbling vehicle are not to be trusted further.
+const DISTURBANCE_BOUND: f64 = 0.5;
 /// Tangent of the cone's angle, 35°.
 const CONE: f64 = 0.7;
-/// Vertical specific thrust between these shares of g.
+/// Vertical force between these shares of the weight.
 const LEAST_LIFT: f64 = 0.4;
-const MOST_LIFT: f64 = 1.6;
+const MOST_LIFT: f64 = 2.0;
 /// k_R, 1/s², and k_ω, 1/s: 6 rad/s, critically damped; yaw rate, 1/s.
-const ATTITUDE_GAIN: f64 = 36.0;
-const RATE_GAIN: f64 = 12.0;
+const ATTITUDE_GAIN: f64 = 64.0;
+const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
 
 /// The hold law's memory: its target and integral.
@@ -51,9 +59,10 @@ impl<T: Real> Hold<T> {
     /// From where `state` is and as fast as it is.
     pub(crate) fn from(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
         let length = vehicle.params().rod_length;
+        let velocity = level(&(state.velocity - state.rod_rate * length));
         Self {
             target: state.position - state.rod * length,
-            velocity: limited(&(state.velocity - state.rod_rate * length), T::lit(10.0)),
+            velocity: limited(&velocity, T::lit(10.0)),
             integral: Vector3::zeros(),
         }
     }
@@ -63,26 +72,28 @@ impl<T: Real> Hold<T> {
         self.target.z - (state.position.z - state.rod.z * vehicle.params().rod_length)
     }
 
-    /// The command at `state` for a vehicle of `mass` (kg), and the target one `period` (s) on, sinking at `descent` (m/s).
+    /// The command at `state` against `disturbance`, and the target one `period` (s) on, sinking at `descent` (m/s).
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
         state: &State<T>,
-        mass: T,
+        disturbance: &Disturbance<T>,
         descent: T,
         period: T,
     ) -> Command<T> {
         let params = vehicle.params();
-        let uav = state.position - state.rod * params.rod_length;
-        let uav_velocity = state.velocity - state.rod_rate * params.rod_length;
+        let State { position, velocity, rod: q, rod_rate: w, attitude, body_rate: omega } = state;
+        let uav = position - q * params.rod_length;
+        let uav_velocity = velocity - w * params.rod_length;
         let error = limited(&(uav - self.target), T::lit(REACH));
-        let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
-        self.integral = limited(&integral, T::lit(INTEGRAL_BOUND));
-        let swing = limited(&(state.rod_rate * params.rod_length), T::lit(REACH));
-        let acceleration = swing * T::lit(SWING_GAIN)
-            - error * T::lit(POSITION_GAIN)
-            - limited(&(uav_velocity - self.velocity), T::lit(REACH)) * T::lit(VELOCITY_GAIN)
-            - self.integral;
+        let late = uav_velocity - self.velocity;
+        if late.dot(&late) < T::lit(SETTLING * SETTLING) {
+            let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
+            self.integral = limited(&integral, T::lit(INTEGRAL_BOUND));
+        }
+        let swing = limited(&level(&(w * params.rod_length)), T::lit(LARGEST_SWING));
+        let acceleration =
+            swing * T::lit(SWING_GAIN) - error * T::lit(POSITION_GAIN) - late * T::lit(VELOCITY_GAIN) - self.integral;
 
         self.target += self.velocity * period;
         let mut wanted = self.velocity * (T::one() - period / T::lit(BRAKING)).max(T::zero());
@@ -90,23 +101,28 @@ impl<T: Real> Hold<T> {
         self.velocity = wanted;
 
         let gravity = params.gravity;
-        let lift = (gravity - acceleration.z).clamp(gravity * T::lit(LEAST_LIFT), gravity * T::lit(MOST_LIFT));
-        let sideways = limited(&Vector3::new(-acceleration.x, -acceleration.y, T::zero()), lift * T::lit(CONE));
+        let felt = disturbance.payload - disturbance.rod * params.rod_length;
+        let pull = params.payload_mass * vehicle.per_total_mass * params.rod_length * w.dot(w);
+        let mut needed = limited(&felt, gravity * T::lit(DISTURBANCE_BOUND)) - acceleration + q * pull;
+        needed.z += gravity;
+        let force = needed * params.uav_mass + q * (params.payload_mass * q.dot(&needed));
+        let weight = vehicle.hover_thrust();
+        let lift = force.z.clamp(weight * T::lit(LEAST_LIFT), weight * T::lit(MOST_LIFT));
+        let sideways = limited(&level(&force), lift * T::lit(CONE));
         let force = Vector3::new(sideways.x, sideways.y, lift);
 
-        // The wanted direction in body axes; past a right angle the error stays as large as at it.
-        let body = state.attitude.tr_mul(&force);
+        // The angle to the wanted direction, about the level axis of the body that turns to it; upside down, about any.
+        let body = attitude.tr_mul(&force);
         let across = (body.x * body.x + body.y * body.y).sqrt();
-        let scale = if body.z > T::zero() {
-            T::one() / force.dot(&force).sqrt()
-        } else if across > T::lit(1e-3) {
-            T::one() / across
+        let angle = across.atan2(body.z);
+        let (x, y) = if across > T::lit(1e-3) * weight {
+            (body.x * (angle / across), body.y * (angle / across))
+        } else if body.z > T::zero() {
+            (T::zero(), T::zero())
         } else {
-            T::zero()
+            (angle, T::zero())
         };
-        let (x, y) = if scale > T::zero() { (body.x * scale, body.y * scale) } else { (T::one(), T::zero()) };
         let (attitude, rate) = (T::lit(ATTITUDE_GAIN), T::lit(RATE_GAIN));
-        let omega = &state.body_rate;
         let omega_dot = Vector3::new(
             -attitude * y - rate * omega.x,
             attitude * x - rate * omega.y,
@@ -114,10 +130,15 @@ impl<T: Real> Hold<T> {
         );
         let inertia = &vehicle.inertia;
         Command {
-            thrust: (body.z * mass).max(T::zero()),
+            thrust: body.z.max(T::zero()),
             torque: inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)),
         }
     }
+}
+
+/// The level part of `v`.
+fn level<T: Real>(v: &Vector3<T>) -> Vector3<T> {
+    Vector3::new(v.x, v.y, T::zero())
 }
 
 /// `v`, or as much of it as has length `most`.

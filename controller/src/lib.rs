@@ -36,6 +36,7 @@
 #![no_std]
 
 pub mod actuator;
+pub mod allocation;
 pub mod analytic;
 pub mod approach;
 pub mod compensator;
@@ -59,7 +60,8 @@ pub mod track;
 pub mod vehicle;
 pub mod yaw;
 
-pub use actuator::ActuatorLimits;
+pub use actuator::{Actuation, ActuatorLimits};
+pub use allocation::{Allocation, RotorParams, Rotors};
 pub use analytic::Analytic;
 pub use approach::ApproachLimits;
 pub use compensator::Command;

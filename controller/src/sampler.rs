@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use crate::actuator::{ActuatorLimits, Actuators};
+use crate::actuator::{Actuation, ActuatorLimits, Actuators};
 use crate::compensator::{Command, continuing, propagate};
 use crate::disturbance::{Disturbance, Observer, ObserverParams};
 use crate::error::OutOfRange;
@@ -66,7 +66,7 @@ pub(crate) struct Ahead<T> {
 
 /// The memory of a sampled law.
 #[derive(Clone, Debug)]
-pub struct Sampler<T> {
+pub struct Sampler<T, A = ActuatorLimits<T>> {
     vehicle: Vehicle<T>,
     period: T,
     half_hold: T,
@@ -79,7 +79,9 @@ pub struct Sampler<T> {
     bump: Option<Command<T>>,
     /// What a period leaves of it.
     fade: T,
-    limits: ActuatorLimits<T>,
+    actuation: A,
+    /// The last command was more than the actuators could apply.
+    is_saturated: bool,
     actuators: Actuators<T>,
     observer: Observer<T>,
 }
@@ -100,15 +102,51 @@ impl<T: Real> Sampler<T> {
             u_zeta: T::zero(),
             bump: Some(Command::zero()),
             fade: (-period / T::lit(TAKE_OVER)).exp(),
-            limits: ActuatorLimits::none(),
+            actuation: ActuatorLimits::none(),
+            is_saturated: false,
             actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
             observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
         })
     }
+}
 
-    pub(crate) fn set_limits(&mut self, limits: ActuatorLimits<T>) -> Result<(), OutOfRange<T>> {
-        limits.check()?;
-        self.limits = limits;
+impl<T: Real, A: Actuation<T>> Sampler<T, A> {
+    /// The same memory with another actuation.
+    pub(crate) fn with_actuation<B: Actuation<T>>(self, actuation: B) -> Result<Sampler<T, B>, OutOfRange<T>> {
+        actuation.check()?;
+        let Self {
+            vehicle,
+            period,
+            half_hold,
+            horizon,
+            zeta,
+            u_zeta,
+            bump,
+            fade,
+            is_saturated,
+            actuators,
+            observer,
+            ..
+        } = self;
+        Ok(Sampler {
+            vehicle,
+            period,
+            half_hold,
+            horizon,
+            zeta,
+            u_zeta,
+            bump,
+            fade,
+            actuation,
+            is_saturated,
+            actuators,
+            observer,
+        })
+    }
+
+    pub(crate) fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
+        actuation.check()?;
+        self.actuation = actuation;
         Ok(())
     }
 
@@ -150,20 +188,18 @@ impl<T: Real> Sampler<T> {
 
     /// Limits and sends a command that is no law's.
     pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
-        let applied = self.limits.limit(command);
+        let applied = self.actuation.apply(command);
         self.actuators.push(applied);
         applied
     }
 
-    /// What may be commanded.
-    pub(crate) fn limits(&self) -> &ActuatorLimits<T> {
-        &self.limits
+    pub(crate) fn actuation(&self) -> &A {
+        &self.actuation
     }
 
-    /// The payload mass, kg, that the estimate implies in still air.
-    pub(crate) fn implied_payload_mass(&self, state: &State<T>) -> T {
-        let lambda = Model::at(&self.vehicle, state).lambda(self.actuators.applied().thrust);
-        self.observer.estimate().implied_payload_mass(&self.vehicle, &state.rod, lambda)
+    /// The last command was more than the actuators could apply.
+    pub(crate) fn is_saturated(&self) -> bool {
+        self.is_saturated
     }
 
     /// After periods without a usable state: the observers start from `state`, with their estimates.
@@ -207,7 +243,8 @@ impl<T: Real> Sampler<T> {
         let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(&command));
         self.bump = Some(bump.times(self.fade));
         let smooth = command.plus(&bump);
-        let applied = self.limits.limit(&smooth);
+        let applied = self.actuation.apply(&smooth);
+        self.is_saturated = applied != smooth;
         self.actuators.push(applied);
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
         let missing = command.thrust - applied.thrust;

@@ -16,6 +16,7 @@
 //! Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
 //! next good state is flown on.
 
+use crate::actuator::{Actuation, ActuatorLimits};
 use crate::approach::ApproachLimits;
 use crate::compensator::Command;
 use crate::disturbance::Disturbance;
@@ -151,8 +152,8 @@ pub struct Output<T> {
 
 /// A path-following controller that answers every input.
 #[derive(Clone, Debug)]
-pub struct Supervisor<T, P> {
-    follower: Follower<T, P>,
+pub struct Supervisor<T, P, A = ActuatorLimits<T>> {
+    follower: Follower<T, P, A>,
     envelope: Envelope<T>,
     approach: ApproachLimits<T>,
     policy: Policy<T>,
@@ -166,10 +167,10 @@ pub struct Supervisor<T, P> {
     unloaded: T,
 }
 
-impl<T: Real, P: Path<T>> Supervisor<T, P> {
+impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// Rotors off. An error names the parameter that is out of range.
     pub fn new(
-        follower: Follower<T, P>,
+        follower: Follower<T, P, A>,
         envelope: &EnvelopeParams<T>,
         approach: ApproachLimits<T>,
         policy: Policy<T>,
@@ -198,7 +199,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
     }
 
     /// The law that is supervised.
-    pub fn follower(&self) -> &Follower<T, P> {
+    pub fn follower(&self) -> &Follower<T, P, A> {
         &self.follower
     }
 
@@ -206,7 +207,8 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
     pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
         if state.check().is_ok() && applied.is_finite() {
             let sampler = self.follower.sampler();
-            sampler.engage(state, sampler.limits().limit(&applied));
+            let applied = sampler.actuation().apply(&applied);
+            sampler.engage(state, applied);
             self.request = Request::Hold;
             self.enter_hold(state, None);
         }
@@ -250,7 +252,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         match self.mode {
             Mode::Off => self.grounded(sampled, Command::zero()),
             Mode::Idle => {
-                let least = self.follower.sampler().limits().min_thrust.max(T::zero());
+                let least = self.follower.actuation().least_thrust();
                 self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
             }
             Mode::Engage | Mode::Follow => self.following(sampled),
@@ -338,11 +340,9 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         let vehicle = *self.follower.vehicle();
         let sampler = self.follower.sampler();
         let period = sampler.period();
-        let params = vehicle.params();
-        let implied = sampler.implied_payload_mass(sampled);
-        let mass = params.uav_mass + implied.clamp(T::zero(), params.payload_mass * T::lit(4.0));
+        let disturbance = *sampler.disturbance();
         let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
-        let wanted = self.hold.step(&vehicle, state, mass, descent, period);
+        let wanted = self.hold.step(&vehicle, state, &disturbance, descent, period);
         if self.mode == Mode::Land && self.hold.left_above(&vehicle, sampled) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
@@ -370,7 +370,7 @@ impl<T: Real, P: Path<T>> Supervisor<T, P> {
         let hover = self.follower.vehicle().hover_thrust();
         let sampler = self.follower.sampler();
         self.blind += sampler.period();
-        let least = sampler.limits().min_thrust.max(T::zero());
+        let least = sampler.actuation().least_thrust();
         let command = match self.mode {
             Mode::Off => Command::zero(),
             Mode::Idle => Command { thrust: least, torque: Vector3::zeros() },

@@ -158,7 +158,7 @@ impl<T: Real> Tracker<T> {
 
     /// With limits on what is commanded.
     pub fn with_limits(mut self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
-        self.sampler.set_limits(limits)?;
+        self.sampler.set_actuation(limits)?;
         Ok(self)
     }
 
