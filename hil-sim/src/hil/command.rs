@@ -13,30 +13,38 @@ use crate::batch::Outcome;
 use crate::run::{self, Arithmetic, End};
 use crate::scenario::Scenario;
 
-/// Where the target is and how to speak with it.
+/// Where the target is: one of these.
 #[derive(Args, Clone, Debug)]
-#[group(id = "where", required = true, multiple = false, args = ["port", "connect", "emulate"])]
-pub struct Arguments {
-    /// Scenario files, or names of built-in scenarios; none for the paper's figures.
-    #[arg(value_name = "FILE")]
-    pub files: Vec<PathBuf>,
+#[group(required = true, multiple = false)]
+pub struct Place {
     /// Serial port of the target.
     #[arg(long)]
     pub port: Option<String>,
-    /// Its baud rate.
-    #[arg(long, default_value_t = 921_600, requires = "port")]
-    pub baud: u32,
     /// Socket of the target: unix:PATH or tcp:HOST:PORT.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
     /// Image to start in QEMU.
     #[arg(long, value_name = "IMAGE")]
     pub emulate: Option<PathBuf>,
-    /// QEMU's machine for it: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386 (Cortex-M4F), mps2-an500 (Cortex-M7).
-    #[arg(long, default_value = "netduinoplus2", requires = "emulate")]
+}
+
+/// Where the target is and how to speak with it.
+#[derive(Args, Clone, Debug)]
+pub struct Arguments {
+    /// Scenario files, or names of built-in scenarios; none for the paper's figures.
+    #[arg(value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Where the target is.
+    #[command(flatten)]
+    pub place: Place,
+    /// Baud rate of the serial port.
+    #[arg(long, default_value_t = 921_600)]
+    pub baud: u32,
+    /// QEMU's machine for the image: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386 (Cortex-M4F), mps2-an500 (Cortex-M7).
+    #[arg(long, default_value = "netduinoplus2")]
     pub machine: String,
     /// Let QEMU count instructions: cycle counts are then exact and repeatable, and flights slower.
-    #[arg(long, requires = "emulate")]
+    #[arg(long)]
     pub count: bool,
     /// Fly by the target's own timer and the clock on the wall, not in lockstep.
     #[arg(long)]
@@ -118,7 +126,7 @@ pub fn fly_all(
         telemetry: !arguments.no_telemetry,
         ..Options::default()
     };
-    let mut target = match (&arguments.port, &arguments.connect, &arguments.emulate) {
+    let mut target = match (&arguments.place.port, &arguments.place.connect, &arguments.place.emulate) {
         (Some(port), ..) => {
             Target::connect(Endpoint::Serial { port: port.clone(), baud: arguments.baud }, None, options)?
         }

@@ -39,8 +39,10 @@ impl Emulator {
             .arg(image)
             // It waits for us, so that its first words are not lost.
             .arg("-chardev")
-            .arg(format!("socket,id=hil,path={},server=on,wait=on", socket.display()))
-            .args(["-serial", "chardev:hil"]);
+            // Multiplexed for the sake of its buffer: a port takes the next byte when it has been read, and not a wake-up later.
+            .arg(format!("socket,id=hil,path={},server=on,wait=on,mux=on", socket.display()))
+            // No byte has this value, so none is taken for the multiplexer's escape.
+            .args(["-echr", "0x100", "-serial", "chardev:hil"]);
         let shift = count.then_some(Self::SHIFT);
         if let Some(shift) = shift {
             command.args(["-icount", &format!("shift={shift},sleep=off")]);

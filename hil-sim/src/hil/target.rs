@@ -81,6 +81,9 @@ impl Statistics {
     }
 }
 
+/// A read of fewer bytes is the beginning of a frame, and the next should find more.
+const GATHER: usize = 32;
+
 /// A target that is ready to fly.
 pub struct Target {
     endpoint: Endpoint,
@@ -350,6 +353,10 @@ impl Target {
             Ok(0) => self.mend(ErrorKind::UnexpectedEof.into()),
             Ok(count) => {
                 self.received_bytes += count as u64;
+                if count < GATHER {
+                    // An emulator sends bytes one by one; waking for each costs more than waiting for some.
+                    std::thread::sleep(Duration::from_micros(20));
+                }
                 let (inbox, statistics) = (&mut self.inbox, &mut self.statistics);
                 for &byte in &bytes[..count] {
                     self.decoder.push(byte, |received| match received {

@@ -126,6 +126,8 @@ impl SerialPort {
 
 impl Serial for SerialPort {
     fn receive(&mut self) -> Option<u8> {
+        // Before the state is read, so that a byte that comes after has its interrupt.
+        UART0.write(Self::INTERRUPT, 0b10);
         let state = UART0.read(Self::STATE);
         if state & 0b1000 != 0 {
             self.lost = self.lost.wrapping_add(1);
@@ -134,7 +136,6 @@ impl Serial for SerialPort {
         if state & 0b10 == 0 {
             return None;
         }
-        UART0.write(Self::INTERRUPT, 0b10);
         Some(UART0.read(Self::DATA) as u8)
     }
 
