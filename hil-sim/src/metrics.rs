@@ -34,6 +34,12 @@ pub struct Results {
     /// Largest d_C from the release by the obstacle on, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dc_max_after_release_m: Option<f64>,
+    /// Largest d_C in the steady time, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady_dc_max_m: Option<f64>,
+    /// Root mean square of d_C over the steady time, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steady_dc_rms_m: Option<f64>,
     /// Mean of √(p1² + p2²) − radius over the steady time, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steady_radius_error_m: Option<f64>,
@@ -90,6 +96,8 @@ pub struct Metrics<'a> {
     min_thrust: f64,
     peak_torque: f64,
     dc_after_release: Option<f64>,
+    distance: Spread,
+    distance_squared: Spread,
     radius: Spread,
     p3: Spread,
     speed: Spread,
@@ -113,6 +121,8 @@ impl<'a> Metrics<'a> {
             min_thrust: f64::INFINITY,
             peak_torque: 0.0,
             dc_after_release: None,
+            distance: Spread::default(),
+            distance_squared: Spread::default(),
             radius: Spread::default(),
             p3: Spread::default(),
             speed: Spread::default(),
@@ -137,6 +147,10 @@ impl<'a> Metrics<'a> {
         let reached = |from: Option<f64>| from.is_some_and(|from| t > from - self.half_period);
         if reached(self.released_s) {
             self.dc_after_release = Some(self.dc_after_release.unwrap_or(0.0).max(distance));
+        }
+        if reached(self.steady_from_s) {
+            self.distance.push(distance);
+            self.distance_squared.push(distance * distance);
         }
         if reached(self.steady_from_s)
             && let Some(circle) = self.law.circle()
@@ -167,6 +181,8 @@ impl<'a> Metrics<'a> {
             min_thrust_n: Some(self.min_thrust),
             peak_torque_nm: Some(self.peak_torque),
             dc_max_after_release_m: self.dc_after_release,
+            steady_dc_max_m: self.distance.max(),
+            steady_dc_rms_m: self.distance_squared.mean().map(f64::sqrt),
             steady_radius_error_m: self.radius.mean(),
             steady_p3_error_m: self.p3.mean(),
             steady_speed_error_m_s: self.speed.mean(),

@@ -21,12 +21,37 @@ pub const FIGURES: &[(&str, &str)] = scenarios![
     "fig6-no-integral",
 ];
 
+/// Curves of every kind: each from off the path, and again with the law told half and one and a half times the payload's mass.
+pub const CURVES: &[(&str, &str)] = scenarios![
+    "tilted-circle",
+    "tilted-circle-light",
+    "tilted-circle-heavy",
+    "sloped-ellipse",
+    "sloped-ellipse-light",
+    "sloped-ellipse-heavy",
+    "superellipse",
+    "superellipse-light",
+    "superellipse-heavy",
+    "bent",
+    "bent-light",
+    "bent-heavy",
+    "vertical-ellipse",
+    "vertical-ellipse-light",
+    "vertical-ellipse-heavy",
+    "knot",
+    "knot-light",
+    "knot-heavy",
+    "building",
+    "building-light",
+    "building-heavy",
+];
+
 /// The scenario of this name, if there is one.
 ///
 /// # Errors
 /// [`ScenarioError`] as for any file.
 pub fn builtin(name: &str) -> Option<Result<Scenario, ScenarioError>> {
-    let (name, text) = FIGURES.iter().find(|(known, _)| *known == name)?;
+    let (name, text) = FIGURES.iter().chain(CURVES).find(|(known, _)| *known == name)?;
     Some(Scenario::parse(&format!("hil-sim/scenarios/{name}.toml"), text))
 }
 
@@ -36,7 +61,7 @@ mod tests {
 
     #[test]
     fn every_built_in_scenario_is_valid() {
-        for (name, _) in FIGURES {
+        for (name, _) in FIGURES.iter().chain(CURVES) {
             let scenario = builtin(name).expect("it is in the list").unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(scenario.name, *name);
         }
