@@ -174,12 +174,17 @@ impl<T: Real> core::fmt::Display for SetupError<T> {
 
 impl<T: Real> core::error::Error for SetupError<T> {}
 
+/// How long integral action waits after the thrust was limited, s: five time constants of a pole at −1.
+const RECOVERY: f64 = 5.0;
+
 /// The path-following controller: the law at a fixed rate.
 #[derive(Clone, Debug)]
 pub struct Follower<T, P, A = ActuatorLimits<T>> {
     path: P,
     gains: Gains<T>,
     integral: [T; 3],
+    /// Time since the thrust was limited, s.
+    unsaturated: T,
     approach: Approach<T>,
     sampler: Sampler<T, A>,
 }
@@ -197,7 +202,14 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
             gains.k2[0] += gains.integral[1] * lead;
             gains.k3[0] += gains.integral[2] * lead;
         }
-        Ok(Self { path, gains, integral: [T::zero(); 3], approach: Approach::none(), sampler })
+        Ok(Self {
+            path,
+            gains,
+            integral: [T::zero(); 3],
+            unsaturated: T::lit(RECOVERY),
+            approach: Approach::none(),
+            sampler,
+        })
     }
 
     /// With limits on what is commanded.
@@ -209,8 +221,8 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
 impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     /// With `actuation` in place of the one it has: [`Rotors`](crate::allocation::Rotors), say.
     pub fn with_actuation<B: Actuation<T>>(self, actuation: B) -> Result<Follower<T, P, B>, SetupError<T>> {
-        let Self { path, gains, integral, approach, sampler } = self;
-        Ok(Follower { path, gains, integral, approach, sampler: sampler.with_actuation(actuation)? })
+        let Self { path, gains, integral, unsaturated, approach, sampler } = self;
+        Ok(Follower { path, gains, integral, unsaturated, approach, sampler: sampler.with_actuation(actuation)? })
     }
 
     /// Changes what the actuators can apply, in flight too.
@@ -291,8 +303,9 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
         self.approach.advance(period);
         let Solution { command, u_zeta, margins, .. } = solution;
         let applied = self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3);
-        // What the actuators can't give, no integral may ask for ever louder.
-        if !self.sampler.is_saturated() {
+        // What the actuators can't give, no integral may ask for ever louder; nor count the way back for an error that stays.
+        self.unsaturated = if self.sampler.is_saturated() { T::zero() } else { self.unsaturated + period };
+        if self.unsaturated >= T::lit(RECOVERY) {
             let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
             for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
                 *integral += period * h;

@@ -80,7 +80,7 @@ pub struct Sampler<T, A = ActuatorLimits<T>> {
     /// What a period leaves of it.
     fade: T,
     actuation: A,
-    /// The last command was more than the actuators could apply.
+    /// The last command's thrust was not what the actuators could apply.
     is_saturated: bool,
     actuators: Actuators<T>,
     observer: Observer<T>,
@@ -193,11 +193,16 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         applied
     }
 
+    /// What acts up to this sample, as far as is known.
+    pub(crate) fn applied(&self) -> &Command<T> {
+        self.actuators.applied()
+    }
+
     pub(crate) fn actuation(&self) -> &A {
         &self.actuation
     }
 
-    /// The last command was more than the actuators could apply.
+    /// The last command's thrust was not what the actuators could apply.
     pub(crate) fn is_saturated(&self) -> bool {
         self.is_saturated
     }
@@ -240,11 +245,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// that the applied thrust gives.
     #[inline]
     pub(crate) fn hold(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(&command));
+        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(&self.actuation.apply(&command)));
         self.bump = Some(bump.times(self.fade));
         let smooth = command.plus(&bump);
         let applied = self.actuation.apply(&smooth);
-        self.is_saturated = applied != smooth;
+        self.is_saturated = applied.thrust != smooth.thrust;
         self.actuators.push(applied);
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
         let missing = command.thrust - applied.thrust;

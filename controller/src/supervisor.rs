@@ -20,14 +20,16 @@ use crate::actuator::{Actuation, ActuatorLimits};
 use crate::approach::ApproachLimits;
 use crate::compensator::Command;
 use crate::disturbance::Disturbance;
-use crate::envelope::{Envelope, EnvelopeParams, Margin, Standing};
+use crate::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
 use crate::error::OutOfRange;
 use crate::follow::{Follower, Solution, Xi};
 use crate::hold::Hold;
+use crate::model::Model;
 use crate::path::Path;
 use crate::sampler::Ahead;
 use crate::scalar::Real;
 use crate::state::{Channel, State};
+use crate::yaw::Yaw;
 use nalgebra::Vector3;
 
 /// What the vehicle is doing.
@@ -210,16 +212,24 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             let applied = sampler.actuation().apply(&applied);
             sampler.engage(state, applied);
             self.request = Request::Hold;
+            self.fault = None;
             self.enter_hold(state, None);
         }
     }
 
-    /// Starts on the path, from a stated ζ: [`Mode::Follow`] without an approach.
+    /// Starts on the path, from a stated ζ: [`Mode::Follow`] without an approach. Of numbers that are none, nothing is started.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        self.follower.start(state, zeta);
-        self.request = Request::Follow;
-        self.fault = None;
-        self.mode = Mode::Follow;
+        if state.check().is_ok() && zeta.iter().all(|z| z.is_finite()) {
+            self.follower.start(state, zeta);
+            self.request = Request::Follow;
+            self.fault = None;
+            self.mode = Mode::Follow;
+        }
+    }
+
+    /// Changes what the actuators can apply, in flight too.
+    pub fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
+        self.follower.set_actuation(actuation)
     }
 
     /// The command for the coming hold. Call once every period, with the state sampled now and what the pilot wants.
@@ -250,13 +260,14 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     fn with_state(&mut self, sampled: &State<T>) -> Output<T> {
         self.change_mode(sampled);
         match self.mode {
-            Mode::Off => self.grounded(sampled, Command::zero()),
+            // In fault with a good state: the rotors were cut.
+            Mode::Off | Mode::Fault => self.grounded(sampled, Command::zero()),
             Mode::Idle => {
                 let least = self.follower.actuation().least_thrust();
                 self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
             }
             Mode::Engage | Mode::Follow => self.following(sampled),
-            Mode::Hold | Mode::Land | Mode::Fault => {
+            Mode::Hold | Mode::Land => {
                 let ahead = self.follower.sampler().ahead(sampled);
                 self.holding(sampled, &ahead.state)
             }
@@ -286,13 +297,37 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         }
     }
 
+    /// Joins the path from where the law can; from elsewhere, and from the ground, by way of hold.
     #[cold]
     fn engage(&mut self, sampled: &State<T>) {
-        if self.follower.rejoin(sampled, &self.approach) {
+        if self.standing(sampled) != Standing::Inside {
+            if self.mode == Mode::Idle {
+                self.enter_hold(sampled, None);
+            }
+        } else if self.follower.rejoin(sampled, &self.approach) {
             self.mode = Mode::Engage;
+        } else if self.mode == Mode::Idle {
+            self.fault = Some(Fault::NoPath);
         } else {
             self.enter_hold(sampled, Some(Fault::NoPath));
         }
+    }
+
+    /// How the vehicle stands in the envelope under what is being applied; the path's margins are the law's to say.
+    fn standing(&mut self, sampled: &State<T>) -> Standing {
+        let vehicle = *self.follower.vehicle();
+        let thrust = self.follower.sampler().applied().thrust;
+        let b3: Vector3<T> = sampled.attitude.column(2).into();
+        let margins = Margins {
+            q3: sampled.rod.z,
+            q_b3: b3.dot(&sampled.rod),
+            lambda: Model::at(&vehicle, sampled).lambda(thrust),
+            kappa: thrust * vehicle.kappa_per_thrust,
+            path_det: T::one(),
+            reach: T::one(),
+            cos_phi_squared: Yaw::of(sampled).cos_phi_squared,
+        };
+        self.envelope.assess(&margins, T::one())
     }
 
     fn may_follow(&self) -> bool {
@@ -346,14 +381,19 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         if self.mode == Mode::Land && self.hold.left_above(&vehicle, sampled) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
+            return self.grounded(sampled, Command::zero());
         }
         let (speed, swing) = (sampled.velocity, sampled.rod_rate);
         let is_calm = speed.dot(&speed) < T::lit(CALM_SPEED * CALM_SPEED)
             && swing.dot(&swing) < T::lit(CALM_SWING * CALM_SWING)
             && sampled.attitude.m33 > T::lit(CALM_TILT);
         self.calm = if is_calm { self.calm + period } else { T::zero() };
+        let warning = match self.standing(sampled) {
+            Standing::Inside => None,
+            Standing::Warning(margin) | Standing::Beyond(margin) => Some(margin),
+        };
         let command = self.follower.sampler().hold(wanted, T::zero(), T::zero());
-        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
+        Output { command, mode: self.mode, fault: self.fault, warning, solution: None }
     }
 
     /// A command that needs no law.
@@ -407,7 +447,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
 }
 
 /// How long the payload has to seem lost, s.
-const UNLOADED: f64 = 0.2;
+const UNLOADED: f64 = 0.5;
 /// How far above its target the ground must keep a landing vehicle, m.
 const GROUNDED: f64 = 1.5;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt.
