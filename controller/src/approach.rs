@@ -62,19 +62,19 @@ impl<T: Real> ApproachLimits<T> {
         }
     }
 
-    pub(crate) fn check(&self, vehicle: &Vehicle<T>) -> Result<(), OutOfRange<T>> {
+    /// The limits as the payload's derivatives have them; an error names the limit that is out of range.
+    ///
+    /// An acceleration a of the payload needs a rod angle of atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a:
+    /// half of the tilt is for either.
+    pub fn pace(&self, vehicle: &Vehicle<T>) -> Result<Pace<T>, OutOfRange<T>> {
         let hover = vehicle.hover_thrust();
         OutOfRange::check("speed", self.speed, 0.01, 100.0)?;
         OutOfRange::check("acceleration", self.acceleration, 0.01, 100.0)?;
         OutOfRange::check("tilt", self.tilt, 0.01, 1.2)?;
         OutOfRange::check("rod_angle", self.rod_angle, 0.01, 1.2)?;
         OutOfRange::within("min_thrust", self.min_thrust, T::zero(), hover * T::lit(0.999))?;
-        OutOfRange::within("max_thrust", self.max_thrust, hover * T::lit(1.001), T::lit(1e6))
-    }
+        OutOfRange::within("max_thrust", self.max_thrust, hover * T::lit(1.001), T::lit(1e6))?;
 
-    /// The largest acceleration (m/s²) and snap (m/s⁴) of the payload that keep the limits. An acceleration a needs a rod angle of
-    /// atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a: half of the tilt is for either.
-    fn derivatives(&self, vehicle: &Vehicle<T>) -> (T, T) {
         let params = vehicle.params();
         let gravity = params.gravity;
         let per_mass = vehicle.per_total_mass;
@@ -90,26 +90,42 @@ impl<T: Real> ApproachLimits<T> {
             .min(self.max_thrust * per_mass - gravity)
             .min(gravity - self.min_thrust * per_mass);
         let swing = params.uav_mass * per_mass * params.rod_length / gravity;
-        (acceleration, tilting / swing)
+        Ok(Pace { speed: self.speed, acceleration, snap: tilting / swing })
     }
+}
 
+/// How fast the payload may be moved by an approach: [`ApproachLimits::pace`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace<T> {
+    /// m/s.
+    speed: T,
+    /// m/s².
+    acceleration: T,
+    /// m/s⁴.
+    snap: T,
+}
+
+impl<T: Real> Pace<T> {
     /// The shortest time, s, to brake from `speed`.
-    fn braking(&self, vehicle: &Vehicle<T>, speed: T) -> T {
-        let (acceleration, snap) = self.derivatives(vehicle);
+    fn braking(&self, speed: T) -> T {
         let [peak_1, _, peak_3, _] = PEAKS.map(T::lit);
-        // The cube root by way of the logarithm: once, at engagement.
-        let by_snap = ((peak_3 * speed / snap + T::lit(1e-9)).ln() * T::lit(1.0 / 3.0)).exp();
-        (peak_1 * speed / acceleration).max(by_snap)
+        (peak_1 * speed / self.acceleration).max(cube_root(peak_3 * speed / self.snap))
     }
 
     /// The shortest time, s, to slide over `distance`.
-    fn sliding(&self, vehicle: &Vehicle<T>, distance: T) -> T {
-        let (acceleration, snap) = self.derivatives(vehicle);
+    fn sliding(&self, distance: T) -> T {
         let [peak_1, peak_2, _, peak_4] = PEAKS.map(T::lit);
         (peak_1 * distance / self.speed)
-            .max((peak_2 * distance / acceleration).sqrt())
-            .max((peak_4 * distance / snap).sqrt().sqrt())
+            .max((peak_2 * distance / self.acceleration).sqrt())
+            .max((peak_4 * distance / self.snap).sqrt().sqrt())
     }
+}
+
+/// x^(1/3) or a little more, for 0 ≤ x ≤ 10⁶: Newton's steps from 1 + √x come down to it from above.
+fn cube_root<T: Real>(x: T) -> T {
+    const STEPS: usize = 12;
+    let third = T::lit(1.0 / 3.0);
+    (0..STEPS).fold(T::one() + x.sqrt(), |root, _| root - (root - x / (root * root)) * third)
 }
 
 /// A slide under way, or none.
@@ -155,21 +171,16 @@ impl<T: Real> Approach<T> {
 
     /// From `state`. `None` if no point of the path is found: the search is Newton's on h1 = h2 = 0 with steps of least length, at most 50
     /// of them.
-    pub(crate) fn start<P: Path<T> + ?Sized>(
-        vehicle: &Vehicle<T>,
-        path: &mut P,
-        limits: &ApproachLimits<T>,
-        state: &State<T>,
-    ) -> Option<Self> {
+    pub(crate) fn start<P: Path<T> + ?Sized>(path: &mut P, pace: &Pace<T>, state: &State<T>) -> Option<Self> {
         let State { position, velocity, .. } = state;
         path.engage(position);
         let nearest = nearest_point(path, position)?;
         path.engage(&nearest);
         let outputs = at_rest(path, &nearest);
         let shortest = T::lit(SHORTEST);
-        let braking = limits.braking(vehicle, length(velocity)).max(shortest);
+        let braking = pace.braking(length(velocity)).max(shortest);
         let displacement = position - nearest + velocity * (braking * T::lit(0.5));
-        let sliding = limits.sliding(vehicle, length(&displacement)).max(shortest);
+        let sliding = pace.sliding(length(&displacement)).max(shortest);
         Some(Self {
             displacement,
             velocity: *velocity,
@@ -374,12 +385,22 @@ mod tests {
     }
 
     #[test]
+    fn cube_roots_are_reached_from_above() {
+        for x in [0.0, 1e-3, 1.0, 27.0, 55.0, 1e3, 1e6] {
+            let root: f64 = cube_root(x);
+            let exact = libm::cbrt(x);
+            assert!(root >= exact - 1e-12 && root <= exact * 1.001 + 0.01, "{x}: {root}");
+        }
+    }
+
+    #[test]
     fn durations_keep_speed_and_acceleration() {
         let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
         let limits = ApproachLimits::gentle(&vehicle);
+        let pace = limits.pace(&vehicle).unwrap();
         for size in [0.1, 1.0, 20.0, 50.0] {
-            let sliding = limits.sliding(&vehicle, size);
-            let braking = limits.braking(&vehicle, size);
+            let sliding = pace.sliding(size);
+            let braking = pace.braking(size);
             let slack = 1.0 + 1e-12;
             assert!(PEAKS[0] * size / sliding <= limits.speed * slack);
             assert!(PEAKS[1] * size / sliding.powi(2) <= limits.acceleration * slack);

@@ -169,13 +169,12 @@ impl<T: Real> Observer<T> {
         })
     }
 
-    /// Forgets every estimate. `state` is to be sampled now, after a period of `acceleration`.
-    pub(crate) fn reset(&mut self, state: &State<T>, acceleration: &Acceleration<T>) {
+    /// Forgets every estimate.
+    pub(crate) fn forget(&mut self) {
         self.estimate = Disturbance::none();
-        self.restart(state, acceleration);
     }
 
-    /// The same, but keeps the estimates.
+    /// Starts from `state`, to be sampled now after a period of `acceleration`, with the estimates as they are.
     pub(crate) fn restart(&mut self, state: &State<T>, acceleration: &Acceleration<T>) {
         self.payload.predicted = state.velocity - acceleration.payload * self.half_period;
         self.rod.predicted = state.rod_rate - acceleration.rod * self.half_period;

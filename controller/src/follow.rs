@@ -6,7 +6,7 @@
 use nalgebra::Vector3;
 
 use crate::actuator::{Actuation, ActuatorLimits};
-use crate::approach::{Approach, ApproachLimits};
+use crate::approach::{Approach, ApproachLimits, Pace};
 use crate::compensator::Command;
 use crate::disturbance::{Disturbance, ObserverParams};
 use crate::envelope::Margins;
@@ -255,15 +255,16 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     }
 
     /// Joins the path from afar, within `limits`: [engages](Self::engage), and slides the path from where the payload is to where it
-    /// belongs. `false` if no point of the path was found: then nothing is engaged.
+    /// belongs. `false` if a limit is out of range ([`ApproachLimits::pace`] says which), or no point of the path was found.
     pub fn join(&mut self, state: &State<T>, applied: Command<T>, limits: &ApproachLimits<T>) -> bool {
+        let Ok(pace) = limits.pace(self.sampler.vehicle()) else { return false };
         self.sampler.engage(state, applied);
-        self.rejoin(state, limits)
+        self.rejoin(state, &pace)
     }
 
     /// Joins the path from what is being commanded, with what is known of disturbances.
-    pub(crate) fn rejoin(&mut self, state: &State<T>, limits: &ApproachLimits<T>) -> bool {
-        let Some(approach) = Approach::start(self.sampler.vehicle(), &mut self.path, limits, state) else {
+    pub(crate) fn rejoin(&mut self, state: &State<T>, pace: &Pace<T>) -> bool {
+        let Some(approach) = Approach::start(&mut self.path, pace, state) else {
             return false;
         };
         self.sampler.take_over(state);

@@ -187,6 +187,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     /// Limits and sends a command that is no law's.
+    #[inline(never)]
     pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
         let applied = self.actuation.apply(command);
         self.actuators.push(applied);
@@ -208,6 +209,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     /// After periods without a usable state: the observers start from `state`, with their estimates.
+    #[inline(never)]
     pub(crate) fn resume(&mut self, state: &State<T>) {
         let estimate = *self.observer.estimate();
         let acceleration = Model::at(&self.vehicle, state).acceleration(self.actuators.applied(), &estimate);
@@ -219,8 +221,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.u_zeta = T::zero();
         self.bump = Some(Command::zero());
         self.actuators.reset(applied);
-        let acceleration = Model::at(&self.vehicle, state).acceleration(&applied, &Disturbance::none());
-        self.observer.reset(state, &acceleration);
+        self.observer.forget();
+        self.resume(state);
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.

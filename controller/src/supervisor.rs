@@ -17,7 +17,7 @@
 //! next good state is flown on.
 
 use crate::actuator::{Actuation, ActuatorLimits};
-use crate::approach::ApproachLimits;
+use crate::approach::{ApproachLimits, Pace};
 use crate::compensator::Command;
 use crate::disturbance::Disturbance;
 use crate::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
@@ -157,7 +157,7 @@ pub struct Output<T> {
 pub struct Supervisor<T, P, A = ActuatorLimits<T>> {
     follower: Follower<T, P, A>,
     envelope: Envelope<T>,
-    approach: ApproachLimits<T>,
+    pace: Pace<T>,
     policy: Policy<T>,
     mode: Mode,
     request: Request,
@@ -178,12 +178,12 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         policy: Policy<T>,
     ) -> Result<Self, OutOfRange<T>> {
         let vehicle = *follower.vehicle();
-        approach.check(&vehicle)?;
+        let pace = approach.pace(&vehicle)?;
         policy.check()?;
         Ok(Self {
             follower,
             envelope: Envelope::new(&vehicle, envelope)?,
-            approach,
+            pace,
             policy,
             mode: Mode::Off,
             request: Request::Off,
@@ -304,7 +304,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             if self.mode == Mode::Idle {
                 self.enter_hold(sampled, None);
             }
-        } else if self.follower.rejoin(sampled, &self.approach) {
+        } else if self.follower.rejoin(sampled, &self.pace) {
             self.mode = Mode::Engage;
         } else if self.mode == Mode::Idle {
             self.fault = Some(Fault::NoPath);

@@ -1,0 +1,102 @@
+//! The paths that are measured, each with points of it to draw states around. Parameters are the controller's at run time.
+
+use core::f32::consts::PI;
+
+use controller::path::{
+    AlongTangent, Bent, Circle, ConstantSpeed, Ellipse, Formula, FourierPath, Harmonics, Linear, Path, Profiled,
+};
+use controller::{Real, Vector3};
+
+use crate::Random;
+
+/// Half-axes of the curves, m.
+const A: f32 = 5.0;
+const B: f32 = 4.0;
+/// Height, m, and slope of the ellipse.
+const P3: f32 = -10.0;
+const SLOPE: f32 = 0.3;
+/// Speed, m/s, and how much of it the bent curve changes with p1/a.
+const SPEED: f32 = 1.5;
+const SPEED_CHANGE: f32 = 0.5;
+
+/// The paper's circle, yaw 0.
+pub fn circle() -> Option<impl Path<f32>> {
+    Some(Circle::new(A, P3).ok()?.at_speed(1.0))
+}
+
+/// The tilted ellipse, yaw along it.
+pub fn ellipse() -> Option<impl Path<f32>> {
+    let curve = Ellipse::new(A, B, P3, SLOPE).ok()?;
+    Some(Profiled { curve, speed: ConstantSpeed(SPEED), yaw: AlongTangent })
+}
+
+/// The bent curve, speed and yaw changing with p1.
+pub fn bent() -> Option<impl Path<f32>> {
+    let along_p1 = |value, slope| Formula(Linear { value, gradient: Vector3::new(slope, 0.0, 0.0) });
+    let curve = Bent::new(A, B, P3).ok()?;
+    Some(Profiled { curve, speed: along_p1(SPEED, SPEED_CHANGE / A), yaw: along_p1(0.0, 0.2) })
+}
+
+/// A knotted loop of eight harmonics, yaw along it.
+pub fn fourier8() -> Option<impl Path<f32>> {
+    let curve = FourierPath::new(KNOT).ok()?;
+    Some(Profiled { curve, speed: ConstantSpeed(SPEED), yaw: AlongTangent })
+}
+
+/// Eight harmonics that fall off as a fitted loop's do.
+const KNOT: Harmonics<f32, 8> = Harmonics {
+    center: [0.0, 0.0, P3],
+    cos: [
+        [8.0, 0.0, 0.3],
+        [0.0, 0.6, 0.5],
+        [0.4, 0.0, 0.2],
+        [0.0, 0.1, 0.0],
+        [0.05, 0.0, 0.02],
+        [0.0, 0.02, 0.0],
+        [0.01, 0.0, 0.01],
+        [0.0, 0.005, 0.0],
+    ],
+    sin: [
+        [0.0, 7.0, 0.0],
+        [0.6, 0.0, -0.3],
+        [0.0, 0.3, 0.1],
+        [0.1, 0.0, 0.05],
+        [0.0, -0.05, 0.0],
+        [0.02, 0.0, 0.01],
+        [0.0, 0.01, 0.0],
+        [0.005, 0.0, 0.0],
+    ],
+    reference: [0.0, 0.0, 1.0],
+};
+
+/// A point of the circle.
+pub fn on_circle(random: &mut Random) -> Vector3<f32> {
+    let (sin, cos) = angle(random);
+    Vector3::new(A * cos, A * sin, P3)
+}
+
+/// A point of the ellipse.
+pub fn on_ellipse(random: &mut Random) -> Vector3<f32> {
+    let (sin, cos) = angle(random);
+    Vector3::new(A * cos, B * sin, P3 + SLOPE * A * cos)
+}
+
+/// A point of the bent curve.
+pub fn on_bent(random: &mut Random) -> Vector3<f32> {
+    let (sin, cos) = angle(random);
+    // x⁴ + y⁴ = 1 along the direction of the angle.
+    let (sin_2, cos_2) = (sin * sin, cos * cos);
+    let scale = 1.0 / (sin_2 * sin_2 + cos_2 * cos_2).sqrt().sqrt();
+    let p1 = A * cos * scale;
+    let (wave, _) = (0.5 * p1).sin_cos();
+    Vector3::new(p1, B * sin * scale, P3 + 0.5 * wave)
+}
+
+/// A point of the loop of eight harmonics.
+pub fn on_fourier8(random: &mut Random) -> Vector3<f32> {
+    KNOT.point(random.around_zero(PI))
+}
+
+fn angle(random: &mut Random) -> (f32, f32) {
+    Real::sin_cos(random.around_zero(PI))
+}
