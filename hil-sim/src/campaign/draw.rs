@@ -112,9 +112,8 @@ impl StartFields {
         Ok(())
     }
 
-    /// A start about one of the path's `points`.
-    pub(super) fn draw(&self, points: &[[f64; 3]], random: &mut Stream) -> Start {
-        let point = points[(random.unit() * points.len() as f64) as usize];
+    /// A start about a `point` of the path.
+    pub(super) fn draw(&self, point: &Vector3<f64>, random: &mut Stream) -> Start {
         let tilt_deg = random.uniform(0.0, self.tilt_deg);
         let rod_deg = random.uniform(0.0, self.rod_deg);
         let (tilt_axis, rod_axis) = (direction(random), direction(random));
@@ -124,7 +123,7 @@ impl StartFields {
         let rod: Vector3<f64> = turned(&rod_axis, rod_deg.to_radians()).column(2).into();
         let rate = random.ball() * self.rod_rate;
         let state = State {
-            position: Vector3::from(point) + random.ball() * self.distance_m,
+            position: point + random.ball() * self.distance_m,
             velocity: random.ball() * self.speed,
             rod,
             rod_rate: rate - rod * rod.dot(&rate),
