@@ -3,7 +3,7 @@
 use controller::path::Path;
 use controller::{
     ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follower, Gains, Matrix3, ObserverParams, Output, Pole,
-    Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
+    Policy, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
     Vehicle, VehicleParams, place,
 };
 

@@ -105,7 +105,7 @@ fn svg(size: (u32, u32), draw: &dyn Fn(&Area<'_>) -> Drawn) -> Result<String, Bo
 
 /// d_C's percentiles at the instants that rows have.
 fn percentiles(duration_s: f64, rows: &[Row]) -> Vec<Curve> {
-    let mut at: Vec<Vec<f64>> = vec![Vec::with_capacity(rows.len()); INSTANTS];
+    let mut at: Vec<Vec<f64>> = vec![Vec::new(); INSTANTS];
     for row in rows {
         for (slot, text) in at.iter_mut().zip(row.dc_over_time_m.split(';')) {
             slot.extend(text.parse::<f64>());

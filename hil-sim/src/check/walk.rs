@@ -171,7 +171,7 @@ fn shifted(motion: &Motion, ahead: f64) -> Motion {
     let mut shifted = *motion;
     for first in 0..shifted.len() {
         for k in (first..shifted.len() - 1).rev() {
-            shifted[k] = shifted[k] + shifted[k + 1] * ahead;
+            shifted[k] += shifted[k + 1] * ahead;
         }
     }
     shifted

@@ -172,7 +172,7 @@ impl<T: Real> Curve<T> for AnyCurve<T> {
     }
 
     fn engage(&mut self, position: &Vector3<T>) {
-        each!(self, curve => curve.engage(position))
+        each!(self, curve => curve.engage(position));
     }
 }
 
