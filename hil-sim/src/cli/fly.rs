@@ -15,9 +15,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::{Common, Ended};
 
-/// The built-in scenarios of the paper's figures.
+/// The built-in scenarios: the paper's figures, and curves of every kind.
 pub fn figures() -> Result<Vec<Scenario>, Box<dyn Error>> {
-    let names = scenario::FIGURES.iter().map(|(name, _)| *name);
+    let names = scenario::FIGURES.iter().chain(scenario::CURVES).map(|(name, _)| *name);
     Ok(names.filter_map(scenario::builtin).collect::<Result<_, _>>()?)
 }
 

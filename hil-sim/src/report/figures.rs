@@ -2,7 +2,7 @@
 
 use plotters::prelude::*;
 
-use super::plot::{Area, COLOURS, Curve, Drawn, Track, plan, space, time, time_log};
+use super::plot::{Area, COLOURS, Curve, Drawn, Track, elevation, plan, space, time, time_log};
 use super::{Figure, ReportError};
 use crate::batch::Outcome;
 use crate::plant::{Input, index};
@@ -20,6 +20,14 @@ struct Plan<'a> {
     panels: fn(&Area<'_>, &[&Outcome]) -> Drawn,
 }
 
+/// What the names of curves' figures begin with.
+pub const CURVE: &str = "curve-";
+
+/// Whether a flight belongs to a family of curves, a figure with a name, rather than to a numbered figure or to none.
+pub fn is_curve(outcome: &Outcome) -> bool {
+    outcome.scenario.figure.as_deref().is_some_and(|figure| !figure.starts_with(|c: char| c.is_ascii_digit()))
+}
+
 /// Draws every figure that these flights belong to.
 pub fn draw(outcomes: &[Outcome]) -> Result<Vec<Figure>, ReportError> {
     plans(outcomes)
@@ -33,18 +41,17 @@ pub fn draw(outcomes: &[Outcome]) -> Result<Vec<Figure>, ReportError> {
 }
 
 fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
-    let of = |number: &str| -> Vec<&Outcome> {
-        outcomes
-            .iter()
-            .filter(|outcome| {
-                outcome
-                    .scenario
-                    .figure
-                    .as_deref()
-                    .is_some_and(|figure| figure.trim_end_matches(char::is_alphabetic) == number)
-            })
-            .collect()
-    };
+    let of =
+        |number: &str| -> Vec<&Outcome> {
+            outcomes
+                .iter()
+                .filter(|outcome| {
+                    outcome.scenario.figure.as_deref().is_some_and(|figure| {
+                        figure == number || figure.trim_end_matches(char::is_alphabetic) == number
+                    })
+                })
+                .collect()
+        };
     let figure = |number, caption: &str, size, panels, runs| Plan {
         name: format!("fig{number}"),
         caption: format!("Fig. {number}. {caption}"),
@@ -93,6 +100,22 @@ fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
         ),
     ];
     plans.retain(|plan| !plan.runs.is_empty());
+    let mut curves: Vec<&str> = outcomes
+        .iter()
+        .filter(|outcome| is_curve(outcome))
+        .filter_map(|outcome| outcome.scenario.figure.as_deref())
+        .collect();
+    curves.dedup();
+    plans.extend(curves.into_iter().map(|curve| {
+        let runs = of(curve);
+        Plan {
+            name: format!("{CURVE}{curve}"),
+            caption: format!("{curve}. {}", runs.first().map_or("", |run| &run.scenario.title)),
+            runs,
+            size: (1000, 1240),
+            panels: curve_sheet,
+        }
+    }));
     plans.extend(outcomes.iter().filter(|outcome| outcome.scenario.figure.is_none()).map(|outcome| Plan {
         name: outcome.scenario.name.clone(),
         caption: format!("{}. {}", outcome.scenario.name, outcome.scenario.title),
@@ -161,6 +184,23 @@ fn sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
     time_log(&parts[0], "d_C, m", 1e-5, &curves(runs, distance), &marks)?;
     time(&parts[1], "T, N", &curves(runs, |_, sample| command(sample).map(|input| input.thrust)), &marks)?;
     time(&parts[2], "torque, N m", &curves(runs, |_, sample| command(sample).map(torque)), &marks)
+}
+
+fn curve_sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
+    let (above, below) = area.split_vertically(460);
+    let halves = above.split_evenly((1, 2));
+    plan(&halves[0], "From above", &circle(runs[0]), &tracks(runs, runs))?;
+    elevation(&halves[1], "From the side", &circle(runs[0]), &tracks(runs, runs))?;
+    let parts = below.split_evenly((3, 1));
+    time_log(&parts[0], "d_C, m", 1e-7, &curves(runs, distance), &[])?;
+    // ξ holds h1 … h1⁽⁵⁾, h2 … h2⁽⁵⁾, h3 …, h4.
+    time(&parts[1], "speed error, m/s", &curves(runs, |_, sample| xi(sample, 12)), &[])?;
+    time(&parts[2], "yaw error, rad", &curves(runs, |_, sample| xi(sample, 17)), &[])
+}
+
+/// An element of the follower's ξ.
+fn xi(sample: &Sample, index: usize) -> Option<f64> {
+    sample.decision.as_ref().map(|decision| decision.xi[index])
 }
 
 fn panel(run: &Outcome) -> String {

@@ -20,19 +20,33 @@ figure { margin: 2rem 0 } figure svg { width: 100%; height: auto; border: 1px so
 figcaption { color: #333; margin-top: 0.5rem }
 ";
 
-/// The page with table, figures and how to read them.
-pub fn page(outcomes: &[Outcome], reference: &Reference, figures: &[Figure]) -> String {
+/// What a page shows.
+pub struct Page<'a> {
+    /// Its heading.
+    pub heading: &'a str,
+    /// Flights of its table.
+    pub outcomes: Vec<&'a Outcome>,
+    /// Its figures.
+    pub figures: Vec<&'a Figure>,
+    /// Another page's file and heading.
+    pub link: Option<(&'a str, &'a str)>,
+}
+
+/// A page with table, figures and how to read them.
+pub fn page(page: &Page<'_>, reference: &Reference) -> String {
+    let Page { heading, outcomes, figures, link } = page;
     html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Path following with a slung load" }
+                title { (heading) }
                 style { (PreEscaped(STYLE)) }
             }
             body {
-                h1 { "Path following with a slung load" }
+                h1 { (heading) }
+                @if let Some((file, other)) = link { p { a href=(file) { (other) } } }
                 p {
                     "The controller flies in binary32, as on the target, in closed loop with a binary64 model of vehicle and load. "
                     "Inertial axes n1, n2, n3 with n3 pointing down; p is the payload's position, d"
@@ -60,7 +74,7 @@ pub fn page(outcomes: &[Outcome], reference: &Reference, figures: &[Figure]) -> 
     .into_string()
 }
 
-fn table(outcomes: &[Outcome], reference: &Reference) -> Markup {
+fn table(outcomes: &[&Outcome], reference: &Reference) -> Markup {
     html! {
         div.wide {
             table {

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use crate::batch::Outcome;
 use crate::reference::Reference;
+use html::Page;
 
 /// A drawn figure.
 pub struct Figure {
@@ -71,8 +72,23 @@ pub fn write(folder: &Path, outcomes: &[Outcome], reference: &Reference) -> Resu
         write_file(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
     }
     write_file(&folder.join("summary.json"), summary::json(outcomes, reference).as_bytes())?;
+    let (curves, others): (Vec<&Outcome>, Vec<&Outcome>) =
+        outcomes.iter().partition(|outcome| figures::is_curve(outcome));
+    let (curve_figures, other_figures): (Vec<&Figure>, Vec<&Figure>) =
+        figures.iter().partition(|figure| figure.name.starts_with(figures::CURVE));
+    let title = "Path following with a slung load";
+    let curve_title = "Curves of every kind";
     let page = folder.join("report.html");
-    write_file(&page, html::page(outcomes, reference, &figures).as_bytes())?;
+    let mut report = Page { heading: title, outcomes: others, figures: other_figures, link: None };
+    if report.outcomes.is_empty() {
+        report = Page { heading: curve_title, outcomes: curves, figures: curve_figures, link: None };
+    } else if !curves.is_empty() {
+        let link = Some(("report.html", title));
+        let second = Page { heading: curve_title, outcomes: curves, figures: curve_figures, link };
+        write_file(&folder.join("curves.html"), html::page(&second, reference).as_bytes())?;
+        report.link = Some(("curves.html", curve_title));
+    }
+    write_file(&page, html::page(&report, reference).as_bytes())?;
     Ok(page)
 }
 

@@ -115,8 +115,23 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
 
 /// The payload's ways seen from above, n1 up and n2 to the right, with the curve to be flown in grey.
 pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
+    projection(area, title, curve, tracks, 1, 0)
+}
+
+/// The payload's ways seen from the side, n3 down and to the right whichever of n1 and n2 the curve is longer along.
+pub fn elevation(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
+    let extent = |axis: usize| {
+        let range = range(curve.iter().map(|p| p[axis]), 1.0);
+        range.end - range.start
+    };
+    projection(area, title, curve, tracks, if extent(0) >= extent(1) { 0 } else { 1 }, 2)
+}
+
+/// The ways along n of `right` and of `up`; n3 is drawn downwards.
+fn projection(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track], right: usize, up: usize) -> Drawn {
+    let sense = if up == 2 { -1.0 } else { 1.0 };
     let all = || curve.iter().chain(tracks.iter().flat_map(|track| &track.points));
-    let axes: [Range<f64>; 2] = std::array::from_fn(|axis| range(all().map(|p| p[axis]), 1.0));
+    let axes = [range(all().map(|p| sense * p[up]), 1.0), range(all().map(|p| p[right]), 1.0)];
     // Equal scales on both axes.
     let (width, height) = area.dim_in_pixel();
     let (width, height) = (f64::from(width) - 80.0, f64::from(height) - 90.0);
@@ -133,13 +148,13 @@ pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) 
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_label_formatter(&|p| p.to_string())
-        .y_label_formatter(&|p| p.to_string())
-        .x_desc("p2, m")
-        .y_desc("p1, m")
+        .y_label_formatter(&|p| (sense * p + 0.0).to_string())
+        .x_desc(format!("p{}, m", right + 1))
+        .y_desc(format!("p{}, m", up + 1))
         .label_style((FONT, 13))
         .axis_desc_style((FONT, 14))
         .draw()?;
-    let at = |p: &[f64; 3]| (p[1], p[0]);
+    let at = |p: &[f64; 3]| (p[right], sense * p[up]);
     chart.draw_series(DashedLineSeries::new(curve.iter().map(at), 6, 4, GREY.stroke_width(1)))?;
     for track in tracks {
         let colour = track.colour;

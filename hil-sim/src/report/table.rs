@@ -45,6 +45,8 @@ pub const COLUMNS: &[Column] = &[
     Column { heading: "min T,\nN", value: |r| r.min_thrust_n, format: digits3 },
     Column { heading: "peak torque,\nN m", value: |r| r.peak_torque_nm, format: digits3 },
     Column { heading: "d_C after\nrelease, m", value: |r| r.dc_max_after_release_m, format: length },
+    Column { heading: "steady\nd_C max, m", value: |r| r.steady_dc_max_m, format: length },
+    Column { heading: "steady\nd_C rms, m", value: |r| r.steady_dc_rms_m, format: length },
     Column { heading: "steady\nradius, m", value: |r| r.steady_radius_error_m, format: signed4 },
     Column { heading: "steady\np3, m", value: |r| r.steady_p3_error_m, format: signed4 },
     Column { heading: "steady\nspeed, m/s", value: |r| r.steady_speed_error_m_s, format: signed4 },
