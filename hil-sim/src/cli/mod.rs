@@ -3,6 +3,7 @@
 mod campaign;
 mod check;
 mod compare;
+mod policies;
 mod eval;
 mod fit;
 mod fly;
@@ -114,6 +115,9 @@ enum Command {
     /// each alone and all together. Writes compare.json and compare.html.
     #[command(after_help = compare::EXAMPLES)]
     Compare(compare::CompareArguments),
+    /// Path following against trajectory tracking, start by start: where the paper's claims hold, and where they do not.
+    #[command(after_help = policies::EXAMPLES)]
+    Policies(policies::PolicyArguments),
     /// Fit a closed smooth curve to waypoints.
     ///
     /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and what there is to know of it.
@@ -145,6 +149,7 @@ pub fn run() -> Ended {
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),
         Some(Command::Merge { folders }) => campaign::merge(&common, &folders),
         Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
+        Some(Command::Policies(arguments)) => policies::policies(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),
         Some(Command::Target { listen }) => hil::target(&common, &listen),

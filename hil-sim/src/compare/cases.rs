@@ -109,7 +109,7 @@ fn hardware(scenario: &mut Scenario) {
     scenario.sensors = Sensors::noisy();
 }
 
-fn all(scenario: &mut Scenario, random: &mut Stream) {
+pub(super) fn all(scenario: &mut Scenario, random: &mut Stream) {
     let wind_speed = random.uniform(0.0, 5.0);
     wind(scenario, random, wind_speed, true);
     force(scenario, random, 0.3);
