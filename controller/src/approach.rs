@@ -314,7 +314,7 @@ fn nearest_point<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<
     // On the curve to within what f32 resolves at a hundred metres.
     let close = T::lit(1e-4);
     let mut point = *position;
-    for _ in 0..STEPS {
+    for taken in 0..STEPS {
         let outputs = at_rest(path, &point);
         let [h1, h2] = outputs.surfaces.map(|h| h.value());
         let [g1, g2] = &outputs.gradients;
@@ -323,7 +323,12 @@ fn nearest_point<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<
         let mut step = (g1 * (c * h1 - b * h2) + g2 * (a * h2 - b * h1)) / determinant;
         let length = step.dot(&step).sqrt();
         if !length.is_finite() {
-            return None;
+            if taken > 0 {
+                return None;
+            }
+            // Where the functions are stationary, as at a circle's centre, any direction is as good as another.
+            point += Vector3::repeat(T::lit(0.1));
+            continue;
         }
         if length > longest {
             step *= longest / length;

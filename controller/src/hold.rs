@@ -35,6 +35,9 @@ const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
 /// Fastest swing that is yielded to, m/s.
 const LARGEST_SWING: f64 = 2.0;
+/// A rod that stands on its head, within 8°, may be in balance: an acceleration, m/s², topples it.
+const BALANCED: f64 = -0.99;
+const TOPPLING: f64 = 0.5;
 /// Largest disturbance that is made good, as a share of g: estimates of a tumbling vehicle are not to be trusted further.
 const DISTURBANCE_BOUND: f64 = 0.5;
 /// Tangent of the cone's angle, 35°.
@@ -92,8 +95,11 @@ impl<T: Real> Hold<T> {
             self.integral = limited(&integral, T::lit(INTEGRAL_BOUND));
         }
         let swing = limited(&level(&(w * params.rod_length)), T::lit(LARGEST_SWING));
-        let acceleration =
+        let mut acceleration =
             swing * T::lit(SWING_GAIN) - error * T::lit(POSITION_GAIN) - late * T::lit(VELOCITY_GAIN) - self.integral;
+        if q.z < T::lit(BALANCED) {
+            acceleration.x += T::lit(TOPPLING);
+        }
 
         self.target += self.velocity * period;
         let mut wanted = self.velocity * (T::one() - period / T::lit(BRAKING)).max(T::zero());

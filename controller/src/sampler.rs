@@ -158,7 +158,10 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Starts from a stated ζ; until the first command the thrust is (9) and the torque zero.
     pub(crate) fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
         let thrust = lift(&self.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.vehicle);
-        self.reset(state, zeta, Command { thrust, torque: Vector3::zeros() });
+        // At a singularity (9) says nothing, and what can't be applied was not.
+        let thrust = if thrust.is_finite() { thrust } else { self.vehicle.hover_thrust() };
+        let applied = self.actuation.apply(&Command { thrust, torque: Vector3::zeros() });
+        self.reset(state, zeta, applied);
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.

@@ -1,17 +1,34 @@
 //! The law, supervised: modes, envelope, faults, and a command for every input.
 //!
 //! ```text
-//!          arm              follow            path reached
-//!   OFF ────────▶ IDLE ───────────────▶ ENGAGE ──────────▶ FOLLOW
-//!    ▲              │ hold                │ ▲                 │
-//!    │              ▼                     ▼ │ follow, calm    │
-//!    │            HOLD ◀──────────────────┴─┴─────────────────┘  hold asked for; a margin beyond its limit;
-//!    │              │  ▲                                         an answer not finite; the payload lost
-//!    │         land │  │ hold asked for, or a good state again
-//!    │              ▼  │
-//!    ├─ landed ── LAND │           FAULT: no good state for longer than [`Policy::coast`], from any mode in flight;
-//!    └─ off, from anywhere         rotors cut, or sinking level, as [`Policy::lost`] says
+//!          arm         hold, follow          follow, calm            path reached
+//!   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ ENGAGE ──────────────▶ FOLLOW
+//!    ▲                                ▲ ▲                     │                      │
+//!    │                                │ └─────────────────────┴──────────────────────┘
+//!    │                                │    hold asked for; a margin beyond its limit;
+//!    │        land, from any in flight│    an answer not finite; the payload lost
+//!    ├─ landed ── LAND ───────────────┤ hold or follow asked for
+//!    │                                │
+//!    │           FAULT ───────────────┘ a good state again, unless the rotors were cut
+//!    │             ▲ no good state for longer than [`Policy::coast`], from any in flight:
+//!    │             │ rotors cut, or sinking level, as [`Policy::lost`] says
+//!    └─ off, from anywhere
 //! ```
+//!
+//! What a request, the flight and the state's absence lead to, from each mode, at the next step. The tests read this table and try every field:
+//!
+//! | mode   | `Off` | `Idle` | `Follow` | `Hold` | `Land` | path reached | margin beyond | payload lost | landed | no state | none for long |
+//! |--------|-------|--------|----------|--------|--------|--------------|---------------|--------------|--------|----------|---------------|
+//! | Off    | Off   | Idle   | Idle     | Idle   | Off    |              |               |              |        | Off      | Off           |
+//! | Idle   | Off   | Idle   | Hold     | Hold   | Off    |              |               |              |        | Idle     | Idle          |
+//! | Engage | Off   | Hold   | Engage   | Hold   | Land   | Follow       | Hold          | Hold         |        | Engage   | Fault         |
+//! | Follow | Off   | Hold   | Follow   | Hold   | Land   |              | Hold          | Hold         |        | Follow   | Fault         |
+//! | Hold   | Off   | Hold   | Engage   | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
+//! | Land   | Off   | Hold   | Hold     | Hold   | Land   |              | Land          |              | Off    | Land     | Fault         |
+//! | Fault  | Off   | Hold   | Hold     | Hold   | Hold   |              | Hold          |              |        | Fault    | Fault         |
+//!
+//! From hold the path is joined at once if follow has just been asked for and the vehicle is inside its envelope, and otherwise after
+//! [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
 //!
 //! Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
 //! next good state is flown on.
@@ -278,13 +295,12 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     fn change_mode(&mut self, sampled: &State<T>) {
         match (self.mode, self.request) {
             (Mode::Off, Request::Idle | Request::Follow | Request::Hold) => self.mode = Mode::Idle,
-            (Mode::Idle, Request::Follow) | (Mode::Hold, Request::Follow) if self.may_follow() => {
-                self.engage(sampled);
-            }
+            (Mode::Hold, Request::Follow) if self.may_follow() => self.engage(sampled),
             (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Land, Request::Hold)
             | (Mode::Engage | Mode::Follow | Mode::Land, Request::Idle)
-            | (Mode::Land, Request::Follow) => self.enter_hold(sampled, None),
-            (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Hold, Request::Land) => {
+            | (Mode::Idle | Mode::Land, Request::Follow) => self.enter_hold(sampled, None),
+            (Mode::Idle, Request::Land) => self.mode = Mode::Off,
+            (Mode::Engage | Mode::Follow | Mode::Hold, Request::Land) => {
                 self.enter_hold(sampled, None);
                 self.mode = Mode::Land;
             }
@@ -297,19 +313,17 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         }
     }
 
-    /// Joins the path from where the law can; from elsewhere, and from the ground, by way of hold.
+    /// Joins the path, if the vehicle is where the law can fly it.
     #[cold]
     fn engage(&mut self, sampled: &State<T>) {
-        if self.standing(sampled) != Standing::Inside {
-            if self.mode == Mode::Idle {
-                self.enter_hold(sampled, None);
+        let least = self.follower.vehicle().hover_thrust() * T::lit(ENGAGING_THRUST);
+        let falling = self.follower.sampler().applied().thrust < least;
+        if !falling && self.standing(sampled) == Standing::Inside {
+            if self.follower.rejoin(sampled, &self.pace) {
+                self.mode = Mode::Engage;
+            } else {
+                self.enter_hold(sampled, Some(Fault::NoPath));
             }
-        } else if self.follower.rejoin(sampled, &self.pace) {
-            self.mode = Mode::Engage;
-        } else if self.mode == Mode::Idle {
-            self.fault = Some(Fault::NoPath);
-        } else {
-            self.enter_hold(sampled, Some(Fault::NoPath));
         }
     }
 
@@ -342,6 +356,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         self.follower.sampler().soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
+        self.unloaded = T::zero();
         self.fault = fault.or(self.fault);
     }
 
@@ -446,6 +461,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     }
 }
 
+/// Below this share of the hover thrust the vehicle falls, which hold ends sooner than the law.
+const ENGAGING_THRUST: f64 = 0.75;
 /// How long the payload has to seem lost, s.
 const UNLOADED: f64 = 0.5;
 /// How far above its target the ground must keep a landing vehicle, m.

@@ -1,0 +1,7 @@
+//! The supervised law: its modes, its totality, and what it does at singularities and limits.
+
+mod flight;
+mod modes;
+mod saturation;
+mod singular;
+mod totality;
