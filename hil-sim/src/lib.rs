@@ -25,5 +25,6 @@ pub mod report;
 pub mod route;
 pub mod run;
 pub mod scenario;
+pub mod tune;
 pub mod witness;
 pub mod world;

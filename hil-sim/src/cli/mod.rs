@@ -3,11 +3,12 @@
 mod campaign;
 mod check;
 mod compare;
-mod policies;
 mod eval;
 mod fit;
 mod fly;
 mod hil;
+mod policies;
+mod tune;
 
 use clap::{Parser, Subcommand};
 use std::error::Error;
@@ -118,6 +119,12 @@ enum Command {
     /// Path following against trajectory tracking, start by start: where the paper's claims hold, and where they do not.
     #[command(after_help = policies::EXAMPLES)]
     Policies(policies::PolicyArguments),
+    /// Propose poles and observer bandwidths for a scenario's vehicle, rate, latency, rotor lag and noise.
+    ///
+    /// Flies a small campaign over a grid of both from random starts beside the path, prints what each does, and says what the proposal
+    /// trades. Writes tune.toml (a [controller] to put in place of the scenario's own) and tune.json.
+    #[command(after_help = tune::EXAMPLES)]
+    Tune(tune::TuneArguments),
     /// Fit a closed smooth curve to waypoints.
     ///
     /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and what there is to know of it.
@@ -150,6 +157,7 @@ pub fn run() -> Ended {
         Some(Command::Merge { folders }) => campaign::merge(&common, &folders),
         Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
         Some(Command::Policies(arguments)) => policies::policies(&common, &arguments),
+        Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),
         Some(Command::Target { listen }) => hil::target(&common, &listen),

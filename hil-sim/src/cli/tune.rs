@@ -1,0 +1,89 @@
+//! `tune`: poles and observer bandwidths for a scenario.
+
+use clap::Args;
+use hil_sim::scenario::Scenario;
+use hil_sim::tune;
+use std::fs;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::{Common, Ended, fly};
+
+/// Each example can be pasted into a shell.
+pub const EXAMPLES: &str = "Examples:
+  hil-sim tune                       for the paper's vehicle with slow rotors and noisy sensors in gusts
+  hil-sim tune my-flight.toml --runs 50 --seed 7 --jobs 2 --out /tmp/tune
+  hil-sim tune my-flight.toml --scales 0.8,1,1.2,1.4,1.6 --bandwidths 4,8,16";
+
+/// What to tune for.
+#[derive(Args)]
+pub struct TuneArguments {
+    /// Scenario file that follows a path; left out: the one that comes with the program.
+    #[arg(value_name = "SCENARIO")]
+    file: Option<PathBuf>,
+    /// Flights for each setting.
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    runs: u32,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 1, value_name = "S")]
+    seed: u64,
+    /// Threads; all cores if left out.
+    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    jobs: Option<u16>,
+    /// s of the poles s·{-1, ..., -6} to try.
+    #[arg(long, value_name = "S,S,...", value_delimiter = ',', default_values_t = tune::SCALES)]
+    scales: Vec<f64>,
+    /// Bandwidths of the observers to try, rad/s; 0 is off.
+    #[arg(long, value_name = "RAD_S,...", value_delimiter = ',', default_values_t = tune::BANDWIDTHS)]
+    bandwidths: Vec<f64>,
+}
+
+/// Flies, prints the table and the trade, writes the files.
+pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
+    let TuneArguments { file, runs, seed, jobs, scales, bandwidths } = arguments;
+    if let Some(wrong) = scales.iter().find(|scale| !(0.01..=100.0).contains(*scale)) {
+        return Err(format!("--scales {wrong}: outside 0.01 to 100").into());
+    }
+    let (name, text) = match file {
+        Some(file) => {
+            let name = file.display().to_string();
+            let text = fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
+            (name, text)
+        }
+        None => ("hil-sim/scenarios/tune.toml".to_owned(), tune::SCENARIO.to_owned()),
+    };
+    // Refuses with the line what is wrong before anything is put in its place.
+    let duration_s = Scenario::parse(&name, &text)?.duration_s;
+    let table: toml::Table = toml::from_str(&text)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler = Arc::clone(&stop);
+    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+
+    let runs = *runs as usize;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build()?;
+    let bar = fly::progress_bar(common.quiet, (scales.len() * bandwidths.len() * runs) as f64 * duration_s);
+    // The bar counts milliseconds of flight.
+    let progress = |flown_s: f64| bar.inc((1e3 * flown_s).round() as u64);
+    let tuned = pool.install(|| tune::tune(&table, (scales, bandwidths), (runs, *seed), &stop, &progress));
+    bar.finish_and_clear();
+    let Some(tuning) = tuned.map_err(|error| format!("{name}: {error}"))? else {
+        eprintln!("hil-sim: interrupted: nothing is reported");
+        return Ok(ExitCode::from(130));
+    };
+    let folder = common.folder();
+    fs::create_dir_all(folder)?;
+    let snippet = folder.join("tune.toml");
+    let trade = tune::trade(&tuning);
+    let comment: String = trade.lines().map(|line| format!("# {line}\n")).collect();
+    fs::write(&snippet, format!("{comment}{}", tuning.snippet))?;
+    fs::write(folder.join("tune.json"), serde_json::to_string_pretty(&tuning)?)?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        writeln!(out, "{}\n\n{trade}", tune::table(&tuning))?;
+        writeln!(out, "Put {} in place of the scenario's [controller].", snippet.display())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
