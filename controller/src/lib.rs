@@ -57,6 +57,8 @@ pub mod series;
 pub mod state;
 pub mod supervisor;
 pub mod track;
+#[cfg(feature = "trap")]
+pub mod trap;
 pub mod vehicle;
 pub mod yaw;
 

@@ -10,7 +10,7 @@ use core::ops::Neg;
 use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar};
 use num_traits::{One, Zero};
 
-mod sealed {
+pub(crate) mod sealed {
     /// Closes [`Real`](super::Real), and holds the whole numbers that series arithmetic needs: from a table, since an index turned
     /// into a number at run time would take double precision.
     pub trait Sealed: Sized {
