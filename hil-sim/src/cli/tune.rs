@@ -1,7 +1,7 @@
 //! `tune`: poles and observer bandwidths for a scenario.
 
 use clap::Args;
-use hil_sim::scenario::Scenario;
+use hil_sim::scenario::{self, Scenario};
 use hil_sim::tune;
 use std::fs;
 use std::io::{self, Write};
@@ -21,7 +21,7 @@ pub const EXAMPLES: &str = "Examples:
 /// What to tune for.
 #[derive(Args)]
 pub struct TuneArguments {
-    /// Scenario file that follows a path; left out: the one that comes with the program.
+    /// Scenario file, or name of a built-in scenario, that follows a path; left out: one made for this.
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Flights for each setting.
@@ -50,7 +50,12 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
     let (name, text) = match file {
         Some(file) => {
             let name = file.display().to_string();
-            let text = fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
+            let built_in = scenario::FIGURES.iter().chain(scenario::CURVES).find(|(known, _)| *known == name);
+            let text = match (fs::read_to_string(file), built_in) {
+                (Ok(text), _) => text,
+                (Err(error), Some((_, text))) if error.kind() == io::ErrorKind::NotFound => (*text).to_owned(),
+                (Err(error), _) => return Err(format!("{name}: {error}").into()),
+            };
             (name, text)
         }
         None => ("hil-sim/scenarios/tune.toml".to_owned(), tune::SCENARIO.to_owned()),

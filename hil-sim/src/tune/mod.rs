@@ -241,8 +241,11 @@ fn row(scale: f64, bandwidth: f64, flights: &[Flown]) -> Row {
     }
 }
 
-/// The least of `cost` among the rows with the most good flights.
-fn best(rows: &[Row], cost: fn(&Row) -> f64) -> Option<usize> {
+/// One number of a row.
+type Value = fn(&Row) -> f64;
+
+/// The index of the least `cost` among the rows with the most good flights.
+fn best(rows: &[Row], cost: Value) -> Option<usize> {
     let most = rows.iter().map(|row| row.good).max()?;
     let good = (0..rows.len()).filter(|&index| rows[index].good == most);
     good.min_by(|&a, &b| cost(&rows[a]).total_cmp(&cost(&rows[b])))

@@ -3,7 +3,7 @@
 use comfy_table::{CellAlignment, Table, presets};
 use std::fmt::Write;
 
-use super::{Row, Tuning, best};
+use super::{Row, Tuning, Value, best};
 use crate::compare::length;
 
 /// One sentence on what the proposal gives up and for what, against the most accurate and the calmest setting with as many good flights;
@@ -21,8 +21,7 @@ pub fn trade(tuning: &Tuning) -> String {
         length(chosen.rms_dc_m),
         chosen.rms_torque_nm
     );
-    let others: [(&str, fn(&Row) -> f64); 2] =
-        [("most accurate", |row| row.rms_dc_m), ("calmest", |row| row.rms_torque_nm)];
+    let others: [(&str, Value); 2] = [("most accurate", |row| row.rms_dc_m), ("calmest", |row| row.rms_torque_nm)];
     for (name, cost) in others {
         match best(rows, cost) {
             Some(index) if index == tuning.proposed => {
@@ -43,7 +42,7 @@ pub fn trade(tuning: &Tuning) -> String {
         }
     }
     text.push_str(".\n");
-    let edge = |value: fn(&Row) -> f64| {
+    let edge = |value: Value| {
         let (low, high) = rows.iter().map(value).fold((f64::INFINITY, 0.0_f64), |(l, h), v| (l.min(v), h.max(v)));
         low < high && (value(chosen) == low || value(chosen) == high)
     };
