@@ -147,3 +147,17 @@ fn bad_files_are_refused_with_line_column_and_value() {
         assert!(error.message.contains(message) && error.to_string().starts_with("w.csv"), "{error}");
     }
 }
+
+/// The scenarios round the building fly the curve that their waypoints give.
+#[test]
+fn the_building_scenarios_hold_the_fit_of_their_waypoints() {
+    let points = read("building.csv", include_str!("../scenarios/building.csv")).unwrap();
+    let found = fit(&points, 0.05).unwrap();
+    for name in ["building", "building-light", "building-heavy"] {
+        let scenario = hil_sim::scenario::builtin(name).unwrap().unwrap();
+        let hil_sim::scenario::Law::Follow { path, .. } = scenario.controller.law else { panic!("{name}") };
+        let off = found.lap.nodes().iter().map(|node| path.distance(node.position().into())).fold(0.0, f64::max);
+        // The file's coefficients are rounded to nanometres.
+        assert!(off < 1e-7, "{name}: {off:e}");
+    }
+}
