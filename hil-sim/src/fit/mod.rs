@@ -3,7 +3,7 @@
 //! c(σ) = a0 + Σ (A_k cos kσ + B_k sin kσ) with as few harmonics as keep every waypoint within the tolerance. For given
 //! parameters σᵢ of the waypoints, at first by the square roots of the chords (E. T. Y. Lee, *Choosing nodes in parametric curve
 //! interpolation*, 1989), the coefficients are a linear least-squares problem, each waypoint weighted by the stretch of the loop
-//! it stands for. From there [orthogonal distance regression](orthogonal) minimizes the distances from the waypoints to their nearest points.
+//! it stands for. From there orthogonal distance regression minimizes the distances from the waypoints to their nearest points.
 
 mod orthogonal;
 mod output;
