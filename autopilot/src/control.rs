@@ -85,7 +85,8 @@ pub struct Autopilot {
     mode: LoadMode,
     law: Option<Law>,
     mixer: Mixer,
-    held_for: f32,
+    /// Control periods without a usable state or command.
+    held: u32,
     applied: Command<f32>,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
@@ -109,7 +110,7 @@ impl Autopilot {
             counters: Counters::default(),
             mode: LoadMode::LOAD_MODE_OFF,
             law: None,
-            held_for: 0.0,
+            held: 0,
             applied: NO_COMMAND,
             inbox: None,
             newest_usec: None,
@@ -183,7 +184,7 @@ impl Autopilot {
             self.inbox = None;
             self.newest_usec = None;
             self.last = None;
-            self.held_for = 0.0;
+            self.held = 0;
             self.until_telemetry = 0;
         }
         Ok(())
@@ -299,7 +300,7 @@ impl Autopilot {
             match &step {
                 Some(step) => {
                     self.mode = LoadMode::LOAD_MODE_FLYING;
-                    self.held_for = 0.0;
+                    self.held = 0;
                     self.applied = self.limit(&step.command, &mut faults);
                 }
                 None => self.hold(),
@@ -361,8 +362,9 @@ impl Autopilot {
         if !self.is_turning() || self.mode == LoadMode::LOAD_MODE_SAFE {
             return;
         }
-        if self.held_for < self.parameters.get(Parameter::HoldTime) {
-            self.held_for += self.period_s();
+        // Rounded to whole periods.
+        if (self.held as f32 + 0.5) * self.period_s() < self.parameters.get(Parameter::HoldTime) {
+            self.held = self.held.saturating_add(1);
             self.mode = LoadMode::LOAD_MODE_HOLD;
         } else {
             self.mode = LoadMode::LOAD_MODE_SAFE;
@@ -398,7 +400,7 @@ impl Autopilot {
             integral: self.law.as_ref().map(Law::integral).unwrap_or_default(),
             q3: margins.q3,
             q_b3: margins.q_b3,
-            lambda: margins.lambda,
+            specific_force: margins.lambda,
             kappa: margins.kappa,
             path_det: margins.path_det,
             reach: margins.reach,

@@ -502,7 +502,7 @@ impl Target {
             decision.margins = Margins {
                 q3: data.q3.into(),
                 q_b3: data.q_b3.into(),
-                lambda: data.lambda.into(),
+                lambda: data.specific_force.into(),
                 kappa: data.kappa.into(),
                 path_det: data.path_det.into(),
                 reach: data.reach.into(),

@@ -1,0 +1,421 @@
+//! Flights with the controller at the other end of a line: the same, bit by bit, as with the controller in this program, whatever the line
+//! does; and where a flight can't go on, an end with a reason.
+
+use std::io::{self, Read, Write};
+use std::os::unix::net::{UnixListener, UnixStream};
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use controller::State;
+use hil_sim::hil::{Emulator, Endpoint, HilError, Options, Pace, Target, Wire, serve};
+use hil_sim::pilot::{Answers, Decision, Pilot};
+use hil_sim::run::{self, Arithmetic, End, Flight};
+use hil_sim::scenario::{FIGURES, Scenario, builtin};
+
+/// Remembers every number of every command, by its bits.
+struct Recorded<A> {
+    inner: A,
+    commands: Vec<[u32; 8]>,
+}
+
+impl<A> Recorded<A> {
+    fn new(inner: A) -> Self {
+        Self { inner, commands: Vec::new() }
+    }
+}
+
+impl<A: Answers> Answers for Recorded<A> {
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        self.inner.start(state, zeta);
+    }
+
+    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
+        let decision = self.inner.step(state, t_s)?;
+        let Decision { input, zeta, .. } = decision;
+        let [t1, t2, t3] = input.torque;
+        let [z1, z2, z3, z4] = zeta;
+        // The law computes in f32, so nothing is lost.
+        self.commands.push([input.thrust, t1, t2, t3, z1, z2, z3, z4].map(|number| (number as f32).to_bits()));
+        Some(decision)
+    }
+}
+
+fn scenario(name: &str, duration_s: f64) -> Scenario {
+    let mut scenario = builtin(name).expect("it is built in").expect("and valid");
+    scenario.duration_s = scenario.duration_s.min(duration_s);
+    scenario.steady_from_s = None;
+    scenario
+}
+
+fn fly<A: Answers>(scenario: &Scenario, controller: &mut A) -> Flight {
+    let stop = AtomicBool::new(false);
+    let options = run::Options { arithmetic: Arithmetic::F32, twin: false, stop: &stop, progress: &|_| {} };
+    run::fly_on(scenario, controller, options).expect("a built-in scenario can be set up")
+}
+
+fn fly_here(scenario: &Scenario) -> Vec<[u32; 8]> {
+    let mut pilot = Recorded::new(Pilot::<f32>::new(&scenario.controller).expect("valid"));
+    assert_eq!(fly(scenario, &mut pilot).end, End::Complete);
+    pilot.commands
+}
+
+/// Flies on a target; its commands, or why it ended.
+fn fly_there(scenario: &Scenario, target: Target) -> (Result<Vec<[u32; 8]>, HilError>, Target) {
+    let mut target = Recorded::new(target);
+    if let Err(error) = target.inner.prepare(scenario) {
+        return (Err(error), target.inner);
+    }
+    let flight = fly(scenario, &mut target);
+    let Recorded { inner: mut target, commands } = target;
+    match (flight.end, target.take_failure()) {
+        (End::Complete, None) => (Ok(commands), target),
+        (_, Some(error)) => (Err(error), target),
+        (end, None) => panic!("ended as {end:?} for no reason"),
+    }
+}
+
+/// Quick to ask again: in a test the other end is near.
+const OPTIONS: Options =
+    Options { pace: Pace::Lockstep, patience: Duration::from_secs(10), retry: Duration::from_millis(20), telemetry: false };
+
+/// The flight program's logic in a thread, at the other end of a pair of sockets, behind what `damage` does to the line.
+fn soft_target<W: Wire + 'static>(options: Options, damage: impl FnOnce(UnixStream) -> W) -> Result<Target, HilError> {
+    let (here, there) = UnixStream::pair().expect("sockets");
+    std::thread::spawn(move || serve(there));
+    Target::over(Endpoint::Unix("the other thread".into()), Box::new(damage(here)), options)
+}
+
+#[test]
+fn the_figures_are_the_same_over_the_link() {
+    let mut target = soft_target(OPTIONS, |stream| stream).unwrap();
+    for (name, _) in FIGURES {
+        let scenario = scenario(name, 2.0);
+        let (commands, back) = fly_there(&scenario, target);
+        assert_eq!(commands.unwrap(), fly_here(&scenario), "{name}");
+        target = back;
+    }
+}
+
+/// Changes one byte of a hundred, both ways.
+struct Noisy {
+    stream: UnixStream,
+    seed: u32,
+}
+
+impl Noisy {
+    fn spoil(&mut self, bytes: &mut [u8]) {
+        for byte in bytes {
+            // Marsaglia's xorshift32.
+            self.seed ^= self.seed << 13;
+            self.seed ^= self.seed >> 17;
+            self.seed ^= self.seed << 5;
+            if self.seed % 100 == 0 {
+                *byte ^= (self.seed >> 8) as u8 | 1;
+            }
+        }
+    }
+}
+
+impl Read for Noisy {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(bytes)?;
+        self.spoil(&mut bytes[..count]);
+        Ok(count)
+    }
+}
+
+impl Write for Noisy {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut bytes = bytes.to_vec();
+        self.spoil(&mut bytes);
+        self.stream.write_all(&bytes)?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+impl Wire for Noisy {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.stream.set_patience(patience)
+    }
+}
+
+#[test]
+fn noise_changes_nothing_but_the_time_it_takes() {
+    let options = Options { retry: Duration::from_millis(4), ..OPTIONS };
+    let target = soft_target(options, |stream| Noisy { stream, seed: 2024 }).unwrap();
+    let scenario = scenario("fig3a", 0.3);
+    let (commands, target) = fly_there(&scenario, target);
+    assert_eq!(commands.unwrap(), fly_here(&scenario));
+    assert!(target.statistics().repeats > 100, "the line was not noisy: {} repeats", target.statistics().repeats);
+}
+
+/// Answers come later than they are asked for again.
+struct Slow {
+    stream: UnixStream,
+    reads: u32,
+}
+
+impl Read for Slow {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.reads += 1;
+        if self.reads % 7 == 0 {
+            std::thread::sleep(Duration::from_millis(12));
+        }
+        self.stream.read(bytes)
+    }
+}
+
+impl Write for Slow {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+impl Wire for Slow {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.stream.set_patience(patience)
+    }
+}
+
+#[test]
+fn delay_changes_nothing() {
+    let options = Options { retry: Duration::from_millis(3), ..OPTIONS };
+    let target = soft_target(options, |stream| Slow { stream, reads: 0 }).unwrap();
+    let scenario = scenario("fig3b", 0.5);
+    let (commands, _) = fly_there(&scenario, target);
+    assert_eq!(commands.unwrap(), fly_here(&scenario));
+}
+
+#[test]
+fn real_time_flies_the_path_too() {
+    let options = Options { pace: Pace::RealTime, ..OPTIONS };
+    let target = soft_target(options, |stream| stream).unwrap();
+    // On the steady motion: a command of the period before, or two, is almost the right one.
+    let mut scenario = scenario("fig2a", 2.0);
+    scenario.obstacle = None;
+    let mut target = Recorded::new(target);
+    target.inner.prepare(&scenario).unwrap();
+    let begun = Instant::now();
+    let flight = fly(&scenario, &mut target);
+    assert_eq!(flight.end, End::Complete, "{:?}", target.inner.take_failure());
+    assert!(begun.elapsed() >= Duration::from_secs_f64(0.95 * scenario.duration_s), "by the clock on the wall");
+    let last = flight.log.last().expect("the end is logged").x;
+    let off = scenario.controller.law.distance([last[0], last[1], last[2]]);
+    assert!(off < 0.5, "{off} m from the path");
+}
+
+/// Somebody who accepts one connection and does with it what `habit` says.
+fn listener(name: &str, habit: impl FnOnce(UnixStream) + Send + 'static) -> Endpoint {
+    let path = std::env::temp_dir().join(format!("hil-test-{}-{name}.sock", std::process::id()));
+    let _ = std::fs::remove_file(&path);
+    let listener = UnixListener::bind(&path).expect("a socket in the temporary folder");
+    std::thread::spawn(move || {
+        let (stream, _) = listener.accept().expect("someone connects");
+        let _ = std::fs::remove_file(path);
+        habit(stream);
+    });
+    Endpoint::Unix(std::env::temp_dir().join(format!("hil-test-{}-{name}.sock", std::process::id())))
+}
+
+const HASTY: Options = Options { patience: Duration::from_millis(300), ..OPTIONS };
+
+fn refused(endpoint: Endpoint) -> HilError {
+    let begun = Instant::now();
+    let error = Target::connect(endpoint, None, HASTY).err().expect("nobody is there to fly with");
+    assert!(begun.elapsed() < Duration::from_secs(3), "took {:?}", begun.elapsed());
+    error
+}
+
+#[test]
+fn a_silent_target_is_named() {
+    let error = refused(listener("silent", |_stream| std::thread::sleep(Duration::from_secs(1))));
+    assert!(matches!(error, HilError::Silent { .. }), "{error}");
+}
+
+#[test]
+fn gibberish_is_named() {
+    let error = refused(listener("gibberish", |mut stream| {
+        for byte in 0..100_u8 {
+            let _ = stream.write_all(&[byte; 32]);
+            std::thread::sleep(Duration::from_millis(4));
+        }
+    }));
+    assert!(matches!(error, HilError::Unintelligible { .. }), "{error}");
+}
+
+#[test]
+fn another_dialect_is_named() {
+    use link::dialect::{MavParamType, PARAM_VALUE_DATA};
+    let error = refused(listener("dialect", |mut stream| {
+        let _ = stream.read(&mut [0; 256]);
+        let value = link::MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
+            param_value: 1.0,
+            param_count: 1,
+            param_index: 0,
+            param_id: link::name("LINK_DIALECT"),
+            param_type: MavParamType::MAV_PARAM_TYPE_REAL32 as u8,
+        });
+        let _ = stream.write_all(link::Encoder::new(link::CONTROLLER).frame(&value).bytes());
+        std::thread::sleep(Duration::from_secs(1));
+    }));
+    assert!(matches!(error, HilError::Dialect { theirs: 1, ours: link::FINGERPRINT }), "{error}");
+}
+
+#[test]
+fn a_missing_port_or_socket_is_named() {
+    let error = refused(Endpoint::Serial { port: "/dev/no-such-port".into(), baud: 921_600 });
+    assert!(error.to_string().contains("/dev/no-such-port"), "{error}");
+    let error = refused(Endpoint::Unix("/no/such/socket".into()));
+    assert!(error.to_string().contains("unix:/no/such/socket"), "{error}");
+    assert!("serial:x".parse::<Endpoint>().is_err());
+}
+
+/// A line that ends after so many reads.
+struct Ending {
+    stream: Option<UnixStream>,
+    reads: u32,
+}
+
+impl Ending {
+    fn stream(&mut self) -> io::Result<&mut UnixStream> {
+        self.stream.as_mut().ok_or_else(|| io::ErrorKind::BrokenPipe.into())
+    }
+}
+
+impl Read for Ending {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.reads = self.reads.saturating_sub(1);
+        if self.reads == 0 {
+            self.stream = None;
+        }
+        self.stream()?.read(bytes)
+    }
+}
+
+impl Write for Ending {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream()?.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Wire for Ending {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.stream()?.set_patience(patience)
+    }
+}
+
+#[test]
+fn a_line_that_stays_down_ends_the_flight() {
+    let options = Options { patience: Duration::from_millis(500), ..OPTIONS };
+    let target = soft_target(options, |stream| Ending { stream: Some(stream), reads: 2_000 }).unwrap();
+    let (commands, _) = fly_there(&scenario("fig3a", 10.0), target);
+    let error = commands.expect_err("the line has ended");
+    assert!(matches!(error, HilError::Down { .. }), "{error}");
+}
+
+/// The firmware's images for QEMU's machines, built once. `None` where a machine has no QEMU: not a user's fault, but CI's.
+fn images() -> Option<Vec<(&'static str, PathBuf)>> {
+    use std::process::Command;
+    use std::sync::OnceLock;
+    static IMAGES: OnceLock<Option<Vec<(&'static str, PathBuf)>>> = OnceLock::new();
+    IMAGES
+        .get_or_init(|| {
+            let there = Command::new("qemu-system-arm").arg("--version").output().is_ok();
+            if !there {
+                assert!(std::env::var_os("CI").is_none(), "CI has to have qemu-system-arm");
+                eprintln!("not run: there is no qemu-system-arm here");
+                return None;
+            }
+            let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
+            let build = |board: &str| {
+                let status = Command::new(env!("CARGO"))
+                    .args(["xtask", "thumb", "build", "--quiet", "--release", "--package", "firmware"])
+                    .args(["--no-default-features", "--features", board])
+                    .current_dir(&root)
+                    .status()
+                    .expect("cargo runs");
+                assert!(status.success(), "the firmware for {board} does not build");
+                let built = root.join("firmware/target/thumbv7em-none-eabihf/release/firmware");
+                let kept = std::env::temp_dir().join(format!("firmware-{board}-{}.elf", std::process::id()));
+                std::fs::copy(built, &kept).expect("the image is where it is built");
+                kept
+            };
+            let f405 = build("stm32f405");
+            let mps2 = build("mps2");
+            Some(vec![("netduinoplus2", f405), ("mps2-an386", mps2.clone()), ("mps2-an500", mps2)])
+        })
+        .clone()
+}
+
+fn emulated(machine: &str, image: &std::path::Path, options: Options) -> Target {
+    Target::emulated(Emulator::start(machine, image, false).unwrap(), options).unwrap()
+}
+
+/// Seconds of each figure that are flown in the emulators. Fig. 2's obstacle is at 5 s.
+const EMULATED_S: f64 = 6.0;
+
+#[test]
+fn the_figures_are_the_same_on_every_emulated_board() {
+    let Some(images) = images() else { return };
+    for (machine, image) in images {
+        let mut target = emulated(machine, &image, OPTIONS);
+        for (name, _) in FIGURES {
+            let scenario = scenario(name, EMULATED_S);
+            let (commands, back) = fly_there(&scenario, target);
+            assert_eq!(commands.unwrap(), fly_here(&scenario), "{name} on {machine}");
+            target = back;
+        }
+    }
+}
+
+#[test]
+fn a_killed_emulator_ends_the_flight() {
+    let Some(images) = images() else { return };
+    let (machine, image) = &images[0];
+    let target = emulated(machine, image, OPTIONS);
+    let process = target.emulator_id().expect("it is emulated").to_string();
+    let killer = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_secs(3));
+        std::process::Command::new("kill").args(["-9", &process]).status()
+    });
+    let begun = Instant::now();
+    let (commands, _) = fly_there(&scenario("fig5", 1e3), target);
+    let error = commands.expect_err("the emulator was killed");
+    assert!(matches!(error, HilError::EmulatorDied { .. }), "{error}");
+    assert!(begun.elapsed() < Duration::from_secs(3) + OPTIONS.patience + Duration::from_secs(5));
+    assert!(killer.join().is_ok_and(|status| status.is_ok_and(|status| status.success())));
+}
+
+#[test]
+fn a_cut_line_is_mended_and_nothing_is_lost() {
+    let Some(images) = images() else { return };
+    let (machine, image) = &images[1];
+    let emulator = Emulator::start(machine, image, false).unwrap();
+    let Endpoint::Unix(path) = emulator.endpoint() else { panic!("a socket") };
+    let stream = (0..100)
+        .find_map(|_| {
+            std::thread::sleep(Duration::from_millis(50));
+            UnixStream::connect(&path).ok()
+        })
+        .expect("the emulator opens its socket");
+    let wire = Ending { stream: Some(stream), reads: 1_500 };
+    let target = Target::over(emulator.endpoint(), Box::new(wire), OPTIONS).unwrap();
+    let scenario = scenario("fig3a", 2.0);
+    let (commands, target) = fly_there(&scenario, target);
+    assert_eq!(commands.unwrap(), fly_here(&scenario));
+    assert_eq!(target.statistics().reconnections, 1);
+    drop(emulator);
+}
