@@ -10,6 +10,7 @@ use std::collections::VecDeque;
 
 use super::check;
 use super::rotors::Rotors;
+use super::sensors::Window;
 use crate::input::{Invalid, join, within};
 
 /// The actuators of a flight.
@@ -28,12 +29,32 @@ pub struct Actuators {
     pub max_torque: Option<[f64; 3]>,
     /// The rotors, each with its limits; ideal ones if left out.
     pub rotors: Option<Rotors>,
+    /// A time in which there is less thrust to be had: a sagging battery. The law is not told.
+    pub sag: Option<Sag>,
+}
+
+/// Less thrust for a while.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Sag {
+    /// Largest thrust that can be had, N, 0 to 100000.
+    pub max_thrust: f64,
+    /// When.
+    pub during: Window,
 }
 
 impl Default for Actuators {
     /// Ideal.
     fn default() -> Self {
-        Self { lag_s: 0.0, latency_s: 0.0, thrust_scale: 1.0, thrust_range: None, max_torque: None, rotors: None }
+        Self {
+            lag_s: 0.0,
+            latency_s: 0.0,
+            thrust_scale: 1.0,
+            thrust_range: None,
+            max_torque: None,
+            rotors: None,
+            sag: None,
+        }
     }
 }
 
@@ -55,11 +76,19 @@ impl Actuators {
                 within(&join(at, &format!("max_torque[{axis}]")), limit, 0.0..=1e5)?;
             }
         }
+        if let Some(sag) = &self.sag {
+            let at = join(at, "sag");
+            check(&at, "max_thrust", sag.max_thrust, 0.0, 1e5)?;
+            sag.during.check(&join(&at, "during"))?;
+        }
         self.rotors.map_or(Ok(()), |rotors| rotors.check(&join(at, "rotors")))
     }
 
-    fn saturate(&self, command: &Command<f64>) -> Command<f64> {
-        let thrust = self.thrust_range.map_or(command.thrust, |[low, high]| command.thrust.clamp(low, high));
+    /// What rotors told `command` at `t_s` are able to take of it.
+    fn saturate(&self, t_s: f64, command: &Command<f64>) -> Command<f64> {
+        let most = self.sag.filter(|sag| sag.during.contains(t_s)).map_or(f64::INFINITY, |sag| sag.max_thrust);
+        let thrust =
+            self.thrust_range.map_or(command.thrust, |[low, high]| command.thrust.clamp(low, high)).min(most);
         let torque = self.max_torque.map_or(command.torque, |limit| {
             let limit = Vector3::from(limit);
             command.torque.zip_map(&limit, |torque, limit| torque.clamp(-limit, limit))
@@ -87,13 +116,14 @@ impl ActuatorModel {
     /// `actuators` that have given `command` for long.
     #[must_use]
     pub fn new(actuators: Actuators, command: Command<f64>) -> Self {
-        let target = actuators.saturate(&command);
+        let target = actuators.saturate(0.0, &command);
         Self { actuators, line: VecDeque::new(), target, given: target }
     }
 
     /// Takes a command at `t_s`.
     pub fn push(&mut self, t_s: f64, command: &Command<f64>) {
-        self.line.push_back((t_s + self.actuators.latency_s, self.actuators.saturate(command)));
+        let acts_s = t_s + self.actuators.latency_s;
+        self.line.push_back((acts_s, self.actuators.saturate(acts_s, command)));
     }
 
     /// From `t_s` to when the rotors are next told otherwise, or to `end_s`: the length of that piece.
@@ -162,6 +192,17 @@ mod tests {
         let expected = 0.5 * (20.0 - 10.0 * (-0.001_f64 / 0.05).exp());
         assert!((model.at(0.0, 0.0).thrust - expected).abs() < 1e-12);
         assert!((model.at(0.0, 10.0).thrust - 10.0).abs() < 1e-12, "half of what is commanded in the end");
+    }
+
+    #[test]
+    fn a_sag_takes_thrust_in_its_window() {
+        let sag = Some(Sag { max_thrust: 20.0, during: Window { at_s: 1.0, for_s: 2.0 } });
+        let mut model = ActuatorModel::new(Actuators { sag, ..Actuators::default() }, thrust(30.0));
+        for (t_s, wanted) in [(0.9, 30.0), (1.0, 20.0), (2.9, 20.0), (3.0, 30.0)] {
+            model.push(t_s, &thrust(30.0));
+            model.piece(t_s, t_s + 0.002);
+            assert_eq!(model.at(t_s, 0.0).thrust, wanted, "{t_s}");
+        }
     }
 
     #[test]

@@ -25,6 +25,7 @@
 //! latency_s = 0.01
 //! thrust_scale = 0.85
 //! rotors = { layout = "quad-x", arm_m = 0.3, drag_m = 0.02, max_thrust = 15.0, failure = { rotor = 1, at_s = 9.0, effectiveness = 0.0 } }
+//! sag = { max_thrust = 30.9, during = { at_s = 15.0, for_s = 2.0 } }
 //!
 //! [timing]
 //! jitter = 0.1                      # each control period within ±10 %
@@ -38,7 +39,7 @@ mod rotors;
 mod sensors;
 mod timing;
 
-pub use actuators::{ActuatorModel, Actuators};
+pub use actuators::{ActuatorModel, Actuators, Sag};
 pub use dryden::{Dryden, Gusts};
 pub use environment::{Air, Environment, PayloadStep, drag};
 pub use rotors::{Layout, RotorFailure, Rotors};
