@@ -171,8 +171,11 @@ fn an_unstable_law_is_not_armed_with() {
     });
     Server::new().handle(Ok(request), 0, &mut autopilot, &mut |message| said.push(message));
     assert!(!autopilot.is_armed());
-    assert!(matches!(&said[..], [MavMessage::STATUSTEXT(_), MavMessage::COMMAND_ACK(ack)]
-        if ack.result == MavResult::MAV_RESULT_DENIED as u8), "{said:?}");
+    assert!(
+        matches!(&said[..], [MavMessage::STATUSTEXT(_), MavMessage::COMMAND_ACK(ack)]
+        if ack.result == MavResult::MAV_RESULT_DENIED as u8),
+        "{said:?}"
+    );
 }
 
 /// The rotors' geometry, taken forwards: thrust and torque of four thrusts.
@@ -189,7 +192,8 @@ fn the_mixer_gives_what_is_asked_for() {
     for ((duty, [x, y]), spin) in duties.into_iter().zip(places).zip([1.0, 1.0, -1.0, -1.0]) {
         let force = most * duty * duty;
         thrust += force;
-        torque += Vector3::new(x, y, 0.0).cross(&Vector3::new(0.0, 0.0, -force)) + Vector3::new(0.0, 0.0, spin * drag * force);
+        torque += Vector3::new(x, y, 0.0).cross(&Vector3::new(0.0, 0.0, -force))
+            + Vector3::new(0.0, 0.0, spin * drag * force);
     }
     // Single precision, squared and rooted.
     assert!((thrust - wanted.thrust).abs() < 1e-5 * wanted.thrust);

@@ -76,11 +76,18 @@ fn fly_there(scenario: &Scenario, target: Target) -> (Result<Vec<[u32; 8]>, HilE
 }
 
 /// Quick to ask again: in a test the other end is near.
-const OPTIONS: Options =
-    Options { pace: Pace::Lockstep, patience: Duration::from_secs(10), retry: Duration::from_millis(20), telemetry: false };
+const OPTIONS: Options = Options {
+    pace: Pace::Lockstep,
+    patience: Duration::from_secs(10),
+    retry: Duration::from_millis(20),
+    telemetry: false,
+};
 
 /// The flight program's logic in a thread, at the other end of a pair of sockets, behind what `damage` does to the line.
-fn soft_target<W: Wire + 'static>(options: Options, damage: impl FnOnce(UnixStream) -> W) -> Result<Target, HilError> {
+fn soft_target<W: Wire + 'static>(
+    options: Options,
+    damage: impl FnOnce(UnixStream) -> W,
+) -> Result<Target, HilError> {
     let (here, there) = UnixStream::pair().expect("sockets");
     std::thread::spawn(move || serve(there));
     Target::over(Endpoint::Unix("the other thread".into()), Box::new(damage(here)), options)

@@ -306,8 +306,7 @@ impl Autopilot {
                 None => self.hold(),
             }
         }
-        let (rotor, limited) =
-            if self.is_turning() { self.mixer.mix(&self.applied) } else { ([0.0; 4], false) };
+        let (rotor, limited) = if self.is_turning() { self.mixer.mix(&self.applied) } else { ([0.0; 4], false) };
         faults.set(LoadFault::LOAD_FAULT_LIMITED, limited || faults.contains(LoadFault::LOAD_FAULT_LIMITED));
         let command = LOAD_COMMAND_DATA {
             time_usec: frame.map_or(0, |frame| frame.time_usec),

@@ -62,9 +62,7 @@ pub fn path(parameters: &Parameters) -> Result<AnyPath, OutOfRange<f32>> {
         yaw: match get(Parameter::PathYawKind) as u8 {
             0 => AnyYaw::Fixed(FixedYaw(get(Parameter::PathYaw))),
             1 => AnyYaw::Tangent(AlongTangent),
-            _ => {
-                AnyYaw::PointingAt(Formula(PointingAt { x: get(Parameter::PathYawX), y: get(Parameter::PathYawY) }))
-            }
+            _ => AnyYaw::PointingAt(Formula(PointingAt { x: get(Parameter::PathYawX), y: get(Parameter::PathYawY) })),
         },
     })
 }

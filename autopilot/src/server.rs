@@ -112,7 +112,9 @@ impl Server {
             LoadMode::LOAD_MODE_OFF => status(info, "disarmed"),
             LoadMode::LOAD_MODE_READY => status(info, "armed, waiting for a state"),
             LoadMode::LOAD_MODE_FLYING => status(info, "the law flies"),
-            LoadMode::LOAD_MODE_HOLD => status(MavSeverity::MAV_SEVERITY_WARNING, "no usable state: holding the last command"),
+            LoadMode::LOAD_MODE_HOLD => {
+                status(MavSeverity::MAV_SEVERITY_WARNING, "no usable state: holding the last command")
+            }
             LoadMode::LOAD_MODE_SAFE => status(critical, "no usable state: safe command"),
         })
     }

@@ -82,7 +82,8 @@ impl Decoder {
         let end = HEADER + payload;
         let body = received.get(HEADER..end)?;
         let &[low, high] = received.get(end..end + CHECKSUM)? else { return None };
-        let right = calculate_crc(received.get(1..end)?, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high]);
+        let right =
+            calculate_crc(received.get(1..end)?, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high]);
         let message = if right { MavMessage::parse(MavlinkVersion::V2, id, body).ok() } else { None };
         match message {
             Some(message) => {

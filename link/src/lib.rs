@@ -8,7 +8,14 @@ mod convert;
 mod decoder;
 
 /// The messages, generated from the dialect's XML.
-#[allow(missing_docs, non_camel_case_types, unused_qualifications, elided_lifetimes_in_paths, clippy::all, clippy::pedantic)]
+#[allow(
+    missing_docs,
+    non_camel_case_types,
+    unused_qualifications,
+    elided_lifetimes_in_paths,
+    clippy::all,
+    clippy::pedantic
+)]
 mod generated {
     include!(concat!(env!("OUT_DIR"), "/modules.rs"));
 }
@@ -44,11 +51,8 @@ impl Encoder {
 
     /// The next frame.
     pub fn frame(&mut self, message: &MavMessage) -> Frame {
-        let header = MavHeader {
-            system_id: self.address.0.into(),
-            component_id: self.address.1,
-            sequence: self.sequence,
-        };
+        let header =
+            MavHeader { system_id: self.address.0.into(), component_id: self.address.1, sequence: self.sequence };
         self.sequence = self.sequence.wrapping_add(1);
         let mut frame = MAVLinkV2MessageRaw::new();
         frame.serialize_message(header, message);

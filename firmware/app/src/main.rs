@@ -164,7 +164,8 @@ mod app {
     #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder])]
     fn exchange(cx: exchange::Context) {
         let exchange::LocalResources { serial, decoder, .. } = cx.local;
-        let exchange::SharedResources { mut autopilot, mut server, mut outbox, mut frame, mut answer, .. } = cx.shared;
+        let exchange::SharedResources { mut autopilot, mut server, mut outbox, mut frame, mut answer, .. } =
+            cx.shared;
 
         while let Some(byte) = serial.receive() {
             decoder.push(byte, |received| {

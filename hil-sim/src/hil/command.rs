@@ -151,7 +151,12 @@ pub fn fly_all(
             break;
         }
         let steps = target.statistics().cycles.len();
-        flown.links.push(link_report(&scenario.name, target.statistics(), elapsed_s, target.counts_per_instruction()));
+        flown.links.push(link_report(
+            &scenario.name,
+            target.statistics(),
+            elapsed_s,
+            target.counts_per_instruction(),
+        ));
         let times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
         flown.outcomes.push(Outcome { scenario, flight, times_real_time });
         if let End::Unanswered(_) = end {

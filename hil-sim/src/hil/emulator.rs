@@ -111,7 +111,8 @@ impl Emulator {
     fn died(&self, status: String) -> HilError {
         let text = self.stderr.lock().map(|text| text.clone()).unwrap_or_default();
         // It says on which socket it waits: no fault.
-        let stderr = text.lines().filter(|line| !line.contains("waiting for connection")).collect::<Vec<_>>().join("; ");
+        let stderr =
+            text.lines().filter(|line| !line.contains("waiting for connection")).collect::<Vec<_>>().join("; ");
         HilError::EmulatorDied { status, stderr }
     }
 }

@@ -20,10 +20,7 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
         })
     };
     let vehicle = cast::<f32>(&spec.vehicle);
-    set(
-        Parameter::PayloadMass,
-        &[vehicle.payload_mass, vehicle.uav_mass, vehicle.rod_length],
-    )?;
+    set(Parameter::PayloadMass, &[vehicle.payload_mass, vehicle.uav_mass, vehicle.rod_length])?;
     set(Parameter::Inertia1, &vehicle.inertia)?;
     set(Parameter::Gravity, &[vehicle.gravity])?;
     set(Parameter::Period, &[(1.0 / spec.rate_hz) as f32])?;
@@ -56,7 +53,10 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
     Ok(parameters)
 }
 
-fn set_path(path: &PathSpec, set: &mut impl FnMut(Parameter, &[f32]) -> Result<(), HilError>) -> Result<(), HilError> {
+fn set_path(
+    path: &PathSpec,
+    set: &mut impl FnMut(Parameter, &[f32]) -> Result<(), HilError>,
+) -> Result<(), HilError> {
     let unsupported = |what: &str| Err(HilError::Unsupported(format!("{what} is for simulation only")));
     let f = |x: &f64| *x as f32;
     let kind = match &path.curve {

@@ -20,7 +20,8 @@ pub fn serve(mut wire: impl Wire) -> io::Result<()> {
     let mut server = Server::new();
     let (mut decoder, mut encoder) = (Decoder::new(), Encoder::new(link::CONTROLLER));
     let mut outbox = Vec::new();
-    let mut send = |outbox: &mut Vec<u8>, message: &MavMessage| outbox.extend_from_slice(encoder.frame(message).bytes());
+    let mut send =
+        |outbox: &mut Vec<u8>, message: &MavMessage| outbox.extend_from_slice(encoder.frame(message).bytes());
     server.greet(&autopilot, &mut |message| send(&mut outbox, &message));
     let mut next_tick = start;
     let mut next_report = start;
@@ -34,7 +35,8 @@ pub fn serve(mut wire: impl Wire) -> io::Result<()> {
                 for &byte in &bytes[..count] {
                     decoder.push(byte, |received| {
                         let time_ns = start.elapsed().as_nanos() as u64;
-                        let next = server.handle(received, time_ns, &mut autopilot, &mut |message| send(&mut outbox, &message));
+                        let next = server
+                            .handle(received, time_ns, &mut autopilot, &mut |message| send(&mut outbox, &message));
                         if let Next::Step(frame) = next {
                             let begun = Instant::now();
                             let mut answer = autopilot.lockstep(&frame);
@@ -44,7 +46,8 @@ pub fn serve(mut wire: impl Wire) -> io::Result<()> {
                     });
                 }
             }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
+            Err(error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {}
             Err(error) if matches!(error.kind(), ErrorKind::ConnectionReset | ErrorKind::BrokenPipe) => return Ok(()),
             Err(error) => return Err(error),
         }

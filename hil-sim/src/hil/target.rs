@@ -348,7 +348,8 @@ impl Target {
     fn receive(&mut self, patience: Duration) -> Result<(), HilError> {
         let mut bytes = [0; 1024];
         // A socket refuses to wait for no time at all.
-        let read = self.wire.set_patience(patience.max(Duration::from_millis(1))).and_then(|()| self.wire.read(&mut bytes));
+        let read =
+            self.wire.set_patience(patience.max(Duration::from_millis(1))).and_then(|()| self.wire.read(&mut bytes));
         match read {
             Ok(0) => self.mend(ErrorKind::UnexpectedEof.into()),
             Ok(count) => {
@@ -366,7 +367,11 @@ impl Target {
                 }
                 Ok(())
             }
-            Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => Ok(()),
+            Err(error)
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) =>
+            {
+                Ok(())
+            }
             Err(error) => self.mend(error),
         }
     }
@@ -467,7 +472,11 @@ impl Target {
     }
 
     /// What a command says, once it is found to be one.
-    fn decide(&mut self, command: &LOAD_COMMAND_DATA, telemetry: Option<&LOAD_TELEMETRY_DATA>) -> Result<Decision, HilError> {
+    fn decide(
+        &mut self,
+        command: &LOAD_COMMAND_DATA,
+        telemetry: Option<&LOAD_TELEMETRY_DATA>,
+    ) -> Result<Decision, HilError> {
         let sequence = command.sequence;
         if command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE)
             || command.faults.contains(LoadFault::LOAD_FAULT_NOT_ARMED)
@@ -549,7 +558,9 @@ fn open(endpoint: &Endpoint, emulator: Option<&mut Emulator>, patience: Duration
             emulator.check()?;
         }
         match endpoint.open() {
-            Err(_) if begun.elapsed() < patience && emulator.is_some() => std::thread::sleep(Duration::from_millis(20)),
+            Err(_) if begun.elapsed() < patience && emulator.is_some() => {
+                std::thread::sleep(Duration::from_millis(20))
+            }
             done => return done,
         }
     }

@@ -49,7 +49,12 @@ impl ControlTimer for Timer {
 }
 
 /// TIM3's four channels.
-pub struct RotorOutputs(PwmChannel<pac::TIM3, 0>, PwmChannel<pac::TIM3, 1>, PwmChannel<pac::TIM3, 2>, PwmChannel<pac::TIM3, 3>);
+pub struct RotorOutputs(
+    PwmChannel<pac::TIM3, 0>,
+    PwmChannel<pac::TIM3, 1>,
+    PwmChannel<pac::TIM3, 2>,
+    PwmChannel<pac::TIM3, 3>,
+);
 
 impl Rotors for RotorOutputs {
     fn set(&mut self, [front_right, rear_left, front_left, rear_right]: [f32; 4]) {
@@ -226,7 +231,8 @@ fn reset_cause(rcc: &pac::RCC) -> (bool, u32) {
     rcc.csr().modify(|_, w| w.rmvf().clear());
     let by_watchdog = cause.wdgrstf().is_reset();
     // After power-on, or with no cause given, RAM holds nothing of ours.
-    let fresh = cause.porrstf().is_reset() || !(by_watchdog || cause.sftrstf().is_reset() || cause.padrstf().is_reset());
+    let fresh =
+        cause.porrstf().is_reset() || !(by_watchdog || cause.sftrstf().is_reset() || cause.padrstf().is_reset());
     let before = if fresh { 0 } else { WATCHDOG_RESETS.load(Ordering::Relaxed) };
     let resets = before.wrapping_add(by_watchdog.into());
     WATCHDOG_RESETS.store(resets, Ordering::Relaxed);

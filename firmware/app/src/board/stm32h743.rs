@@ -206,9 +206,9 @@ pub fn start() -> Board {
 
 /// Whether the watchdog caused this reset, and how often it has since power-on.
 fn reset_cause(reason: ResetReason) -> (bool, u32) {
-    let by_watchdog =
-        matches!(reason, ResetReason::IndependentWatchdogReset | ResetReason::GenericWatchdogReset);
-    let kept = by_watchdog || matches!(reason, ResetReason::PinReset | ResetReason::SystemReset | ResetReason::CpuReset);
+    let by_watchdog = matches!(reason, ResetReason::IndependentWatchdogReset | ResetReason::GenericWatchdogReset);
+    let kept =
+        by_watchdog || matches!(reason, ResetReason::PinReset | ResetReason::SystemReset | ResetReason::CpuReset);
     let before = if kept { WATCHDOG_RESETS.load(Ordering::Relaxed) } else { 0 };
     let resets = before.wrapping_add(by_watchdog.into());
     WATCHDOG_RESETS.store(resets, Ordering::Relaxed);
