@@ -1,9 +1,10 @@
 //! The laws as they fly, set up once and put into random states.
 
 use controller::path::Path;
+#[allow(unused_imports)] // `sqrt` is the trait's where there is no std.
 use controller::{
     ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follower, Gains, Matrix3, ObserverParams, Output, Pole,
-    Policy, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
+    Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
     Vehicle, VehicleParams, place,
 };
 
