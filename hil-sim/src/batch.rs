@@ -39,6 +39,7 @@ pub fn work_s(scenarios: &[Scenario]) -> f64 {
 /// [`BatchError`] for the first scenario that cannot be set up in f32.
 pub fn fly_all(
     scenarios: Vec<Scenario>,
+    arithmetic: Arithmetic,
     stop: &AtomicBool,
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<Vec<Outcome>, BatchError> {
@@ -46,7 +47,7 @@ pub fn fly_all(
         .into_par_iter()
         .map(|scenario| {
             let fly = |twin| {
-                fly(&scenario, Options { arithmetic: Arithmetic::F32, twin, stop, progress })
+                fly(&scenario, Options { arithmetic, twin, stop, progress })
                     .map_err(|error| BatchError { scenario: scenario.name.clone(), message: error.to_string() })
             };
             let (flight, alone) = (fly(true)?, fly(false)?);

@@ -4,7 +4,8 @@
 //! twin, the same source in another scalar with its own ζ and integrals, is asked at the same states; what it answers
 //! moves nothing.
 
-use controller::{Command, SetupError, State, Vector3};
+use controller::trap::Trapped;
+use controller::{Command, Real, SetupError, State, Vector3};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -22,6 +23,8 @@ pub enum Arithmetic {
     F32,
     /// As a reference.
     F64,
+    /// As on the target, stopping at the first invalid operation: it panics, naming the operation and its place.
+    Trapped,
 }
 
 /// One sample of a flight.
@@ -91,6 +94,10 @@ pub fn fly(scenario: &Scenario, options: Options<'_>) -> Result<Flight, SetupErr
             fly_with(scenario, &mut pilot, twin, options)
         }
         Arithmetic::F64 => fly_with(scenario, &mut Pilot::<f64>::new(&scenario.controller)?, twin, options),
+        Arithmetic::Trapped => {
+            let mut pilot = Pilot::<Trapped>::new(&scenario.controller).map_err(widen)?;
+            fly_with(scenario, &mut pilot, twin, options)
+        }
     })
 }
 
@@ -221,22 +228,22 @@ fn is_finite(input: &Input) -> bool {
     input.thrust.is_finite() && input.torque.iter().all(|value| value.is_finite())
 }
 
-/// An error of an f32 controller in f64, exact.
-fn widen(error: SetupError<f32>) -> SetupError<f64> {
+/// A controller's error in f64, exact.
+fn widen<T: Real>(error: SetupError<T>) -> SetupError<f64> {
     use controller::GainError;
     match error {
         SetupError::Range(e) => SetupError::Range(controller::OutOfRange {
             field: e.field,
-            value: e.value.into(),
-            min: e.min.into(),
-            max: e.max.into(),
+            value: e.value.to_f64(),
+            min: e.min.to_f64(),
+            max: e.max.to_f64(),
         }),
         SetupError::Gains(e) => SetupError::Gains(match e {
             GainError::PoleCount { expected, given } => GainError::PoleCount { expected, given },
-            GainError::UnstablePole { re } => GainError::UnstablePole { re: re.into() },
+            GainError::UnstablePole { re } => GainError::UnstablePole { re: re.to_f64() },
             GainError::NotHurwitz { output } => GainError::NotHurwitz { output },
             GainError::Integral { output, value, limit } => {
-                GainError::Integral { output, value: value.into(), limit: limit.into() }
+                GainError::Integral { output, value: value.to_f64(), limit: limit.to_f64() }
             }
         }),
     }

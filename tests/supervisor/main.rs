@@ -5,3 +5,4 @@ mod modes;
 mod saturation;
 mod singular;
 mod totality;
+mod trap;

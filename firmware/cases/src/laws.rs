@@ -1,7 +1,6 @@
 //! The laws as they fly, set up once and put into random states.
 
 use controller::path::Path;
-#[allow(unused_imports)] // `sqrt` is the trait's where there is no std.
 use controller::{
     ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follower, Gains, Matrix3, ObserverParams, Output, Pole,
     Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
@@ -139,7 +138,7 @@ fn state_near(point: Vector3<f32>, random: &mut Random) -> State<f32> {
 }
 
 fn unit(vector: Vector3<f32>) -> Vector3<f32> {
-    vector * (1.0 / vector.dot(&vector).sqrt())
+    vector * (1.0 / Real::sqrt(vector.dot(&vector)))
 }
 
 /// ζ1 well away from free fall, and as much of its derivatives.

@@ -86,7 +86,7 @@ pub fn on_bent(random: &mut Random) -> Vector3<f32> {
     let (sin, cos) = angle(random);
     // x⁴ + y⁴ = 1 along the direction of the angle.
     let (sin_2, cos_2) = (sin * sin, cos * cos);
-    let scale = 1.0 / (sin_2 * sin_2 + cos_2 * cos_2).sqrt().sqrt();
+    let scale = 1.0 / Real::sqrt(Real::sqrt(sin_2 * sin_2 + cos_2 * cos_2));
     let p1 = A * cos * scale;
     let (wave, _) = (0.5 * p1).sin_cos();
     Vector3::new(p1, B * sin * scale, P3 + 0.5 * wave)

@@ -3,7 +3,7 @@
 use hil_sim::batch::{self, Outcome};
 use hil_sim::reference::Reference;
 use hil_sim::report;
-use hil_sim::run::End;
+use hil_sim::run::{Arithmetic, End};
 use hil_sim::scenario::{self, Scenario};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
@@ -48,7 +48,7 @@ pub fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
 }
 
 /// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
-pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
+pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) -> Ended {
     let stop = Arc::new(AtomicBool::new(false));
     let handler = Arc::clone(&stop);
     ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
@@ -57,7 +57,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>) -> Ended {
     let planned = scenarios.len();
     let bar = progress_bar(common.quiet, batch::work_s(&scenarios));
     // The bar counts milliseconds of flight.
-    let outcomes = batch::fly_all(scenarios, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
+    let outcomes = batch::fly_all(scenarios, arithmetic, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
     bar.finish_and_clear();
 
     let reference = Reference::builtin();

@@ -11,6 +11,7 @@ mod policies;
 mod tune;
 
 use clap::{Parser, Subcommand};
+use hil_sim::run::Arithmetic;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -68,11 +69,16 @@ enum Command {
     #[command(after_help = "Examples:
   hil-sim run my-flight.toml
   hil-sim run a.toml b.toml --out results
-  hil-sim run fig3a fig3b            built-in scenarios by name")]
+  hil-sim run fig3a fig3b            built-in scenarios by name
+  hil-sim run my-flight.toml --trap  stop at the first invalid operation")]
     Run {
         /// Scenario files, or names of built-in scenarios.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
+        /// Stop at the first invalid floating-point operation inside the law (0/0, the root of a negative number, …), and say
+        /// which and where; RUST_BACKTRACE=1 says how it came to it.
+        #[arg(long)]
+        trap: bool,
     },
     /// Fly every figure of the paper and compare with the reference numbers.
     #[command(after_help = "Examples:
@@ -149,8 +155,10 @@ enum Command {
 pub fn run() -> Ended {
     let Cli { command, common } = Cli::parse();
     match command {
-        Some(Command::Run { files }) => fly::fly(&common, fly::load(&files)?),
-        Some(Command::Figures) | None => fly::fly(&common, fly::figures()?),
+        Some(Command::Run { files, trap }) => {
+            fly::fly(&common, fly::load(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 })
+        }
+        Some(Command::Figures) | None => fly::fly(&common, fly::figures()?, Arithmetic::F32),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),

@@ -282,10 +282,12 @@ mod tests {
                 after_10_s = after_10_s.max(error);
             }
         });
-        println!("d_C {:.2e} m; force within {after_3_s:.4} N after 3 s, {after_10_s:.4} N after 10 s", outcome.dc_max_m);
+        println!(
+            "d_C {:.2e} m; force within {after_3_s:.4} N after 3 s, {after_10_s:.4} N after 10 s",
+            outcome.dc_max_m
+        );
         assert!(outcome.dc_max_m <= 5e-3, "{outcome:?}");
         // At 3 s the rod still swings from the force's sudden start, which turns what the estimate has along it.
         assert!(after_3_s <= 0.03 && after_10_s <= 0.02, "{after_3_s} {after_10_s}");
     }
-
 }
