@@ -117,7 +117,7 @@ impl Noisy {
             self.seed ^= self.seed << 13;
             self.seed ^= self.seed >> 17;
             self.seed ^= self.seed << 5;
-            if self.seed % 100 == 0 {
+            if self.seed.is_multiple_of(100) {
                 *byte ^= (self.seed >> 8) as u8 | 1;
             }
         }
@@ -170,7 +170,7 @@ struct Slow {
 impl Read for Slow {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         self.reads += 1;
-        if self.reads % 7 == 0 {
+        if self.reads.is_multiple_of(7) {
             std::thread::sleep(Duration::from_millis(12));
         }
         self.stream.read(bytes)

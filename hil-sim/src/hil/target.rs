@@ -559,7 +559,7 @@ fn open(endpoint: &Endpoint, emulator: Option<&mut Emulator>, patience: Duration
         }
         match endpoint.open() {
             Err(_) if begun.elapsed() < patience && emulator.is_some() => {
-                std::thread::sleep(Duration::from_millis(20))
+                std::thread::sleep(Duration::from_millis(20));
             }
             done => return done,
         }
