@@ -124,8 +124,7 @@ impl<P: Path<f32>> Flight<P> {
 /// Finite, and within the limits or nothing at all.
 pub fn assert_bounded(output: &Output<f32>) {
     let Command { thrust, torque } = output.command;
-    let within = thrust >= LIMITS.min_thrust
-        && thrust <= LIMITS.max_thrust
+    let within = (LIMITS.min_thrust..=LIMITS.max_thrust).contains(&thrust)
         && torque.iter().zip(LIMITS.max_torque).all(|(torque, most)| torque.abs() <= most);
     assert!(within || output.command == Command::zero(), "{output:?}");
     assert!(output.mode != Mode::Off || output.command == Command::zero(), "{output:?}");
