@@ -49,7 +49,7 @@ impl<T: Real> Actuation<T> for ActuatorLimits<T> {
     }
 
     /// The nearest allowed command.
-    #[inline]
+    #[inline(never)]
     fn apply(&self, command: &Command<T>) -> Command<T> {
         let [t1, t2, t3] = self.max_torque;
         let torque = &command.torque;

@@ -48,7 +48,7 @@ impl<T: Real> Command<T> {
 }
 
 /// The integrator chain (7) over `dt` with u_ζ held: exact.
-#[inline]
+#[inline(never)]
 pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {
     let half = dt * T::lit(1.0 / 2.0);
     let third = dt * T::lit(1.0 / 3.0);

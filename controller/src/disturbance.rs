@@ -37,15 +37,18 @@ impl<T: Real> Disturbance<T> {
         Self { payload: Vector3::zeros(), rod: Vector3::zeros(), torque: Vector3::zeros() }
     }
 
-    /// Force on the payload in N (frame), N (newton): m_L d.
-    pub fn payload_force(&self, vehicle: &Vehicle<T>) -> Vector3<T> {
-        self.payload * vehicle.params().payload_mass
+    /// Force on the payload in N (frame), N (newton): m_L d + m_Q (q·d) q. Along the `rod` forces on either body are one motion, of all the mass,
+    /// and counted here.
+    pub fn payload_force(&self, vehicle: &Vehicle<T>, rod: &Vector3<T>) -> Vector3<T> {
+        let params = vehicle.params();
+        self.payload * params.payload_mass + rod * (rod.dot(&self.payload) * params.uav_mass)
     }
 
-    /// Force on the UAV in N (frame), N (newton): m_Q (d − L δ), since δ = (F_L/m_L − F_Q/m_Q)/L.
-    pub fn uav_force(&self, vehicle: &Vehicle<T>) -> Vector3<T> {
+    /// Force on the UAV in N (frame), N (newton), across the `rod`: that of m_Q (d − L δ), since δ = (F_L/m_L − F_Q/m_Q)/L.
+    pub fn uav_force(&self, vehicle: &Vehicle<T>, rod: &Vector3<T>) -> Vector3<T> {
         let params = vehicle.params();
-        (self.payload - self.rod * params.rod_length) * params.uav_mass
+        let force = (self.payload - self.rod * params.rod_length) * params.uav_mass;
+        force - rod * rod.dot(&force)
     }
 
     /// The payload mass, kg, that would explain d in still air, with `lambda` (m/s²) the payload's specific force along
@@ -127,16 +130,18 @@ impl<T: Real> Channel<T> {
 
     /// Ends the running period with the acceleration at its `right` end, corrects velocity and `disturbance` by what was measured, and begins
     /// the next with the acceleration at its `left` end. A disturbance that would leave its bound stays where it is.
-    #[inline]
+    // One copy for the three; and a first sample selects, so that it costs what any does.
+    #[inline(never)]
     fn correct(
         &mut self,
         measured: &Vector3<T>,
         right: &Vector3<T>,
         left: &Vector3<T>,
         half_period: T,
+        is_first: bool,
         disturbance: &mut Vector3<T>,
     ) {
-        let predicted = self.predicted + right * half_period;
+        let predicted = if is_first { *measured } else { self.predicted + right * half_period };
         let innovation = measured - predicted;
         self.predicted = predicted + innovation * self.velocity_gain + left * half_period;
         let found = *disturbance + innovation.component_mul(&self.disturbance_gain);
@@ -153,6 +158,8 @@ pub struct Observer<T> {
     rod: Channel<T>,
     body: Channel<T>,
     half_period: T,
+    /// No sample has come yet.
+    is_fresh: bool,
     estimate: Disturbance<T>,
 }
 
@@ -165,20 +172,20 @@ impl<T: Real> Observer<T> {
             rod: Channel::new(params.rod_bandwidth, params.rod_bound, period, ones),
             body: Channel::new(params.torque_bandwidth, params.torque_bound, period, vehicle.inertia),
             half_period: period * T::lit(0.5),
+            is_fresh: true,
             estimate: Disturbance::none(),
         })
     }
 
-    /// Forgets every estimate.
+    /// Forgets every estimate, and starts with the next sample.
     pub(crate) fn forget(&mut self) {
         self.estimate = Disturbance::none();
+        self.restart();
     }
 
-    /// Starts from `state`, to be sampled now after a period of `acceleration`, with the estimates as they are.
-    pub(crate) fn restart(&mut self, state: &State<T>, acceleration: &Acceleration<T>) {
-        self.payload.predicted = state.velocity - acceleration.payload * self.half_period;
-        self.rod.predicted = state.rod_rate - acceleration.rod * self.half_period;
-        self.body.predicted = state.body_rate - acceleration.body * self.half_period;
+    /// Starts with the next sample, with the estimates as they are.
+    pub(crate) fn restart(&mut self) {
+        self.is_fresh = true;
     }
 
     /// What has been found up to now.
@@ -193,11 +200,11 @@ impl<T: Real> Observer<T> {
     /// not know, is made good by `right`.
     #[inline]
     pub(crate) fn correct(&mut self, state: &State<T>, right: &Acceleration<T>, left: &Acceleration<T>) {
-        let half_period = self.half_period;
+        let (half_period, first) = (self.half_period, core::mem::take(&mut self.is_fresh));
         let Disturbance { payload, rod, torque } = &mut self.estimate;
-        self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period, payload);
-        self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period, rod);
-        self.body.correct(&state.body_rate, &right.body, &left.body, half_period, torque);
+        self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period, first, payload);
+        self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period, first, rod);
+        self.body.correct(&state.body_rate, &right.body, &left.body, half_period, first, torque);
         *rod -= state.rod * state.rod.dot(rod);
     }
 }

@@ -148,6 +148,7 @@ fn level<T: Real>(v: &Vector3<T>) -> Vector3<T> {
 }
 
 /// `v`, or as much of it as has length `most`.
+#[inline(never)]
 fn limited<T: Real>(v: &Vector3<T>, most: T) -> Vector3<T> {
     let squared = v.dot(v);
     if squared <= most * most { *v } else { v * (most / squared.sqrt()) }

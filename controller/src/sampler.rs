@@ -161,12 +161,12 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         // At a singularity (9) says nothing, and what can't be applied was not.
         let thrust = if thrust.is_finite() { thrust } else { self.vehicle.hover_thrust() };
         let applied = self.actuation.apply(&Command { thrust, torque: Vector3::zeros() });
-        self.reset(state, zeta, applied);
+        self.reset(zeta, applied);
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
     pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.reset(state, [T::zero(); 4], applied);
+        self.reset([T::zero(); 4], applied);
         self.take_over(state);
     }
 
@@ -211,21 +211,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.is_saturated
     }
 
-    /// After periods without a usable state: the observers start from `state`, with their estimates.
-    #[inline(never)]
-    pub(crate) fn resume(&mut self, state: &State<T>) {
-        let estimate = *self.observer.estimate();
-        let acceleration = Model::at(&self.vehicle, state).acceleration(self.actuators.applied(), &estimate);
-        self.observer.restart(state, &acceleration);
+    /// After periods without a usable state: the observers start from the next one, with their estimates.
+    pub(crate) fn resume(&mut self) {
+        self.observer.restart();
     }
 
-    fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
+    fn reset(&mut self, zeta: [T; 4], applied: Command<T>) {
         self.zeta = zeta;
         self.u_zeta = T::zero();
         self.bump = Some(Command::zero());
         self.actuators.reset(applied);
         self.observer.forget();
-        self.resume(state);
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
@@ -250,17 +246,22 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// that the applied thrust gives.
     #[inline]
     pub(crate) fn hold(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.actuators.applied().minus(&self.actuation.apply(&command)));
+        let bump = self.bump.unwrap_or_else(|| self.step_to(&command));
         self.bump = Some(bump.times(self.fade));
         let smooth = command.plus(&bump);
-        let applied = self.actuation.apply(&smooth);
+        let applied = self.send(&smooth);
         self.is_saturated = applied.thrust != smooth.thrust;
-        self.actuators.push(applied);
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
         let missing = command.thrust - applied.thrust;
         self.zeta[0] += missing * alignment * self.vehicle.per_total_mass;
         self.u_zeta = u_zeta;
         applied
+    }
+
+    /// What is applied over what `command` would have applied.
+    #[cold]
+    fn step_to(&self, command: &Command<T>) -> Command<T> {
+        self.actuators.applied().minus(&self.actuation.apply(command))
     }
 
     /// ζ when the next command begins to act.

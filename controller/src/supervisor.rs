@@ -265,7 +265,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             Ok(()) => {
                 if self.blind > T::zero() {
                     self.blind = T::zero();
-                    self.follower.sampler().resume(sampled);
+                    self.follower.sampler().resume();
                 }
                 self.with_state(sampled)
             }
@@ -329,13 +329,13 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
 
     /// How the vehicle stands in the envelope under what is being applied; the path's margins are the law's to say.
     fn standing(&mut self, sampled: &State<T>) -> Standing {
-        let vehicle = *self.follower.vehicle();
         let thrust = self.follower.sampler().applied().thrust;
+        let vehicle = self.follower.vehicle();
         let b3: Vector3<T> = sampled.attitude.column(2).into();
         let margins = Margins {
             q3: sampled.rod.z,
             q_b3: b3.dot(&sampled.rod),
-            lambda: Model::at(&vehicle, sampled).lambda(thrust),
+            lambda: Model::at(vehicle, sampled).lambda(thrust),
             kappa: thrust * vehicle.kappa_per_thrust,
             path_det: T::one(),
             reach: T::one(),
@@ -387,13 +387,11 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// Hold's command for when it acts, at `state`, from what is `sampled` now.
     #[cold]
     fn holding(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
-        let vehicle = *self.follower.vehicle();
-        let sampler = self.follower.sampler();
-        let period = sampler.period();
-        let disturbance = *sampler.disturbance();
+        let period = self.follower.sampler().period();
+        let (vehicle, disturbance) = (self.follower.vehicle(), self.follower.disturbance());
         let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
-        let wanted = self.hold.step(&vehicle, state, &disturbance, descent, period);
-        if self.mode == Mode::Land && self.hold.left_above(&vehicle, sampled) > T::lit(GROUNDED) {
+        let wanted = self.hold.step(vehicle, state, disturbance, descent, period);
+        if self.mode == Mode::Land && self.hold.left_above(vehicle, sampled) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
             return self.grounded(sampled, Command::zero());
