@@ -1,28 +1,25 @@
-//! The control side: modes, the law's step, and what happens when there is no state or no usable command.
+//! The control side: when the law is stepped, on which state, and what becomes of its command.
 //!
 //! ```text
-//!            arm                first good state            state missing or refused,
-//!   OFF ───────────▶ READY ──────────────────▶ FLYING ◀──────────────▶ HOLD     law's answer not finite
-//!    ▲                                            ▲     good state       │
-//!    └── disarm, from anywhere                    └─────────── SAFE ◀────┘ after HOLD_TIME
+//!            arm                     first good state
+//!   OFF ───────────▶ OFF, armed ───────────────────────▶ the supervisor's modes (`controller::supervisor`)
+//!    ▲                              from hover thrust:      IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT
+//!    │                              taken over; or IDLE,               │
+//!    └── disarm, from anywhere ◀──  if that is asked for ──────────────┘ landed
 //! ```
 //!
-//! OFF and READY turn no rotor. HOLD repeats the last command; SAFE is the configured thrust without torque. From either the
-//! law takes over again without a bump in thrust.
+//! Rotors are off in OFF. Every control period steps the law on what there is: a state that is missing or refused is one that is no number, and the
+//! supervisor knows what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming; where nothing was asked for it is to follow the path.
 
-use controller::{Command, Real, State, Vector3};
+use controller::model::Model;
+use controller::{Command, Fault, Mode, Request, State, Vector3};
 use link::dialect::{
-    LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault, LoadMode,
+    LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
-use crate::law::{Law, SetupRefused, Step};
-use crate::mixer::Mixer;
+use crate::law::{Law, LawAnswer, SetupRefused, Step};
 use crate::parameters::{Parameter, Parameters};
-
-/// Beyond this a number in a state is an error, in whatever unit: 100 km, and far more than any rate.
-const LARGEST: f32 = 1e5;
-/// How far |q|² and RᵀR may be from 1. A float's rounding is a hundred times smaller, an estimator's drift should be.
-const UNIT_TOLERANCE: f32 = 1e-2;
+use crate::report;
 
 /// What drives the control step, and whether the rotors do as they are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +48,7 @@ pub struct Boot {
 /// What happened since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Steps of the law.
+    /// Control steps on a good state.
     pub steps: u32,
     /// Control steps that ended after their period.
     pub overruns: u32,
@@ -59,8 +56,8 @@ pub struct Counters {
     pub missed: u32,
     /// States refused.
     pub refused: u32,
-    /// Answers of the law that were not finite.
-    pub law_faults: u32,
+    /// Times a fault ended the law's flight.
+    pub fallbacks: u32,
     /// Most counts of the core's timer that a control step took.
     pub worst_cycles: u32,
 }
@@ -68,7 +65,7 @@ pub struct Counters {
 /// The outcome of one control step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// For the link. Its `rotor` is what the law wants.
+    /// For the link. Its `rotor` is what the law wants, though the vehicle may be a simulated one.
     pub command: LOAD_COMMAND_DATA,
     /// For the link, when it is its turn.
     pub telemetry: Option<LOAD_TELEMETRY_DATA>,
@@ -82,37 +79,38 @@ pub struct Autopilot {
     parameters: Parameters,
     boot: Boot,
     counters: Counters,
-    mode: LoadMode,
+    /// Of the last step.
+    mode: Mode,
+    fault: Option<Fault>,
+    /// While armed.
     law: Option<Law>,
-    mixer: Mixer,
-    /// Control periods without a usable state or command.
-    held: u32,
+    request: Request,
     applied: Command<f32>,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
+    /// The last control period had no state.
+    blind: bool,
     newest_usec: Option<u64>,
     last: Option<Answer>,
     overrun: bool,
     until_telemetry: u32,
 }
 
-const NO_COMMAND: Command<f32> = Command { thrust: 0.0, torque: Vector3::new(0.0, 0.0, 0.0) };
-
 impl Autopilot {
     /// Not armed, with all parameters at their defaults.
     #[must_use]
     pub fn new(boot: Boot) -> Self {
-        let parameters = Parameters::default();
         Self {
-            mixer: Mixer::new(&parameters),
-            parameters,
+            parameters: Parameters::default(),
             boot,
             counters: Counters::default(),
-            mode: LoadMode::LOAD_MODE_OFF,
+            mode: Mode::Off,
+            fault: None,
             law: None,
-            held: 0,
-            applied: NO_COMMAND,
+            request: Request::Follow,
+            applied: Command::zero(),
             inbox: None,
+            blind: false,
             newest_usec: None,
             last: None,
             overrun: false,
@@ -147,16 +145,37 @@ impl Autopilot {
         self.parameters.get(Parameter::Period)
     }
 
-    /// What it does with its rotors.
+    /// What the vehicle is doing.
     #[must_use]
-    pub fn mode(&self) -> LoadMode {
+    pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// Why it is not doing what was asked for: the last fault since something else was.
+    #[must_use]
+    pub fn fault(&self) -> Option<Fault> {
+        self.fault
     }
 
     /// Whether rotors may turn.
     #[must_use]
     pub fn is_armed(&self) -> bool {
-        self.mode != LoadMode::LOAD_MODE_OFF
+        self.law.is_some()
+    }
+
+    /// Whether the last control period had no state.
+    #[must_use]
+    pub fn is_blind(&self) -> bool {
+        self.blind
+    }
+
+    /// Asks for something, now or for after arming. `false` if the law does not know it: tracking only follows.
+    pub fn request(&mut self, request: Request) -> bool {
+        let known = request == Request::Follow || !self.parameters.is_on(Parameter::Law);
+        if known {
+            self.request = request;
+        }
+        known
     }
 
     /// What the board found out when it started.
@@ -178,23 +197,20 @@ impl Autopilot {
     pub fn arm(&mut self) -> Result<(), SetupRefused> {
         if !self.is_armed() {
             self.law = Some(Law::new(&self.parameters)?);
-            self.mixer = Mixer::new(&self.parameters);
-            self.mode = LoadMode::LOAD_MODE_READY;
-            self.applied = NO_COMMAND;
             self.inbox = None;
             self.newest_usec = None;
             self.last = None;
-            self.held = 0;
             self.until_telemetry = 0;
         }
         Ok(())
     }
 
-    /// Rotors off.
+    /// Rotors off. What was asked for is forgotten.
     pub fn disarm(&mut self) {
-        self.mode = LoadMode::LOAD_MODE_OFF;
         self.law = None;
-        self.applied = NO_COMMAND;
+        self.mode = Mode::Off;
+        self.fault = None;
+        self.request = Request::Follow;
         self.last = None;
     }
 
@@ -251,13 +267,13 @@ impl Autopilot {
     /// All counters, for the link; the frames' and bytes' are the server's and the board's to fill in.
     #[must_use]
     pub fn counters_message(&self) -> LOAD_COUNTERS_DATA {
-        let Counters { steps, overruns, missed, refused, law_faults, worst_cycles } = self.counters;
+        let Counters { steps, overruns, missed, refused, fallbacks, worst_cycles } = self.counters;
         LOAD_COUNTERS_DATA {
             steps,
             overruns,
             missed,
             refused,
-            law_faults,
+            fallbacks,
             worst_cycles,
             bad_frames: 0,
             lost_bytes: 0,
@@ -266,12 +282,17 @@ impl Autopilot {
         }
     }
 
-    fn out_of_step(&mut self, frame: &LOAD_STATE_DATA) -> Answer {
+    fn out_of_step(&self, frame: &LOAD_STATE_DATA) -> Answer {
+        self.nothing(Some(frame), self.standing_faults() | LoadFault::LOAD_FAULT_SEQUENCE)
+    }
+
+    /// An answer without a command.
+    fn nothing(&self, frame: Option<&LOAD_STATE_DATA>, faults: LoadFault) -> Answer {
         let command = LOAD_COMMAND_DATA {
-            time_usec: frame.time_usec,
-            sequence: frame.sequence,
-            faults: self.standing_faults() | LoadFault::LOAD_FAULT_SEQUENCE,
-            mode: self.mode,
+            time_usec: frame.map_or(0, |frame| frame.time_usec),
+            sequence: frame.map_or(0, |frame| frame.sequence),
+            faults,
+            mode: report::mode(self.mode),
             ..LOAD_COMMAND_DATA::DEFAULT
         };
         Answer { command, telemetry: None, outputs: [0.0; 4] }
@@ -290,138 +311,113 @@ impl Autopilot {
     fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         let mut faults = self.standing_faults();
         self.overrun = false;
-        let mut step = None;
-        if self.is_armed() {
-            step = frame.and_then(|frame| self.fly(frame, &mut faults));
-            if frame.is_none() {
+        self.blind = frame.is_none();
+        let Some(law) = &mut self.law else { return self.nothing(frame, faults) };
+        let state = match frame {
+            Some(frame) if frame.zeta.iter().all(|z| z.is_finite()) => link::state_of(frame),
+            _ => State::at_rest(Vector3::repeat(f32::NAN)),
+        };
+        let is_good = state.check().is_ok();
+        match frame {
+            None => {
                 self.counters.missed = self.counters.missed.wrapping_add(1);
                 faults |= LoadFault::LOAD_FAULT_NO_STATE;
             }
-            match &step {
-                Some(step) => {
-                    self.mode = LoadMode::LOAD_MODE_FLYING;
-                    self.held = 0;
-                    self.applied = self.limit(&step.command, &mut faults);
-                }
-                None => self.hold(),
+            Some(_) if !is_good => {
+                self.counters.refused = self.counters.refused.wrapping_add(1);
+                faults |= LoadFault::LOAD_FAULT_BAD_STATE;
+            }
+            Some(frame) => {
+                self.counters.steps = self.counters.steps.wrapping_add(1);
+                begin(law, frame, &state, self.request, &self.applied);
             }
         }
-        let (rotor, limited) = if self.is_turning() { self.mixer.mix(&self.applied) } else { ([0.0; 4], false) };
-        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited || faults.contains(LoadFault::LOAD_FAULT_LIMITED));
-        let command = LOAD_COMMAND_DATA {
-            time_usec: frame.map_or(0, |frame| frame.time_usec),
-            sequence: frame.map_or(0, |frame| frame.sequence),
-            thrust: self.applied.thrust,
-            torque: self.applied.torque.into(),
-            zeta: if step.is_some() { self.law.as_ref().map(Law::zeta).unwrap_or_default() } else { [0.0; 4] },
-            u_zeta: step.as_ref().map_or(0.0, |step| step.u_zeta),
+        let was_flying = is_flying(law.mode());
+        let step = law.step(&state, self.request, frame.map_or(0.0, |frame| frame.reference_phase));
+        let has_fallen_back = was_flying && self.request == Request::Follow && !is_flying(step.mode);
+        self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
+        (self.mode, self.fault, self.applied) = (step.mode, step.fault, step.command);
+
+        faults |= step.fault.map_or(LoadFault::empty(), report::fault);
+        faults.set(LoadFault::LOAD_FAULT_LIMITED, step.answer.is_some_and(|answer| answer.limited));
+        let rotor = law.actuators().duties(&step.command);
+        let (zeta, u_zeta) = step.answer.map_or(([0.0; 4], 0.0), |answer| (answer.zeta, answer.u_zeta));
+        let mut answer = self.nothing(frame, faults);
+        answer.command = LOAD_COMMAND_DATA {
+            thrust: step.command.thrust,
+            torque: step.command.torque.into(),
+            zeta: zeta.map(number),
+            u_zeta,
             rotor,
-            cycles: 0,
-            faults,
-            mode: self.mode,
+            ..answer.command
         };
-        let outputs = if self.drive() == Drive::Flight { rotor } else { [0.0; 4] };
-        let telemetry = step.and_then(|step| self.telemetry(command.sequence, &step));
-        Answer { command, telemetry, outputs }
+        if self.drive() == Drive::Flight {
+            answer.outputs = rotor;
+        }
+        if is_good {
+            answer.telemetry = self.telemetry(answer.command.sequence, &state, &step);
+            if step.mode == Mode::Off {
+                // The supervisor has landed.
+                self.disarm();
+            }
+        }
+        answer
     }
 
-    fn is_turning(&self) -> bool {
-        !matches!(self.mode, LoadMode::LOAD_MODE_OFF | LoadMode::LOAD_MODE_READY)
-    }
-
-    /// The law's step on a good state; `None` if the state or the law's answer can't be used.
-    fn fly(&mut self, frame: &LOAD_STATE_DATA, faults: &mut LoadFault) -> Option<Step> {
-        let state = link::state_of(frame);
-        if !is_plausible(&state) || !frame.reference_phase.is_finite() || !frame.zeta.iter().all(|z| z.is_finite()) {
-            self.counters.refused = self.counters.refused.wrapping_add(1);
-            *faults |= LoadFault::LOAD_FAULT_BAD_STATE;
-            return None;
-        }
-        let turning = self.is_turning();
-        let law = self.law.as_mut()?;
-        if frame.action == LoadAction::LOAD_ACTION_START {
-            law.start(&state, frame.zeta);
-        } else if self.mode != LoadMode::LOAD_MODE_FLYING || frame.action == LoadAction::LOAD_ACTION_ENGAGE {
-            let hover = Command { thrust: law.hover_thrust(), torque: Vector3::zeros() };
-            law.engage(&state, if turning { self.applied } else { hover });
-        }
-        let step = law.step(&state, frame.reference_phase);
-        self.counters.steps = self.counters.steps.wrapping_add(1);
-        // ζ is the law's memory: once it is no number, neither is any later command.
-        if step.is_finite() && law.zeta().iter().all(|z| z.is_finite()) {
-            return Some(step);
-        }
-        self.counters.law_faults = self.counters.law_faults.wrapping_add(1);
-        *faults |= LoadFault::LOAD_FAULT_LAW;
-        None
-    }
-
-    /// Nothing usable this period.
-    fn hold(&mut self) {
-        if !self.is_turning() || self.mode == LoadMode::LOAD_MODE_SAFE {
-            return;
-        }
-        // Rounded to whole periods.
-        if (self.held as f32 + 0.5) * self.period_s() < self.parameters.get(Parameter::HoldTime) {
-            self.held = self.held.saturating_add(1);
-            self.mode = LoadMode::LOAD_MODE_HOLD;
-        } else {
-            self.mode = LoadMode::LOAD_MODE_SAFE;
-            let safe = Command { thrust: self.parameters.get(Parameter::SafeThrust), torque: Vector3::zeros() };
-            self.applied = self.limit(&safe, &mut LoadFault::empty());
-        }
-    }
-
-    fn limit(&self, command: &Command<f32>, faults: &mut LoadFault) -> Command<f32> {
-        let largest = self.parameters.get(Parameter::ThrustMax);
-        let least = self.parameters.get(Parameter::ThrustMin).min(largest);
-        let torque = self.parameters.get(Parameter::TorqueMax);
-        let limited = Command {
-            thrust: Real::clamp(command.thrust, least, largest),
-            torque: command.torque.map(|axis| Real::clamp(axis, -torque, torque)),
-        };
-        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited != *command);
-        limited
-    }
-
-    fn telemetry(&mut self, sequence: u32, step: &Step) -> Option<LOAD_TELEMETRY_DATA> {
+    fn telemetry(&mut self, sequence: u32, state: &State<f32>, step: &Step) -> Option<LOAD_TELEMETRY_DATA> {
         let every = self.parameters.get(Parameter::TelemetryEvery) as u32;
         if every == 0 || self.until_telemetry > 0 {
             self.until_telemetry = self.until_telemetry.saturating_sub(1);
             return None;
         }
         self.until_telemetry = every - 1;
-        let margins = &step.margins;
-        Some(LOAD_TELEMETRY_DATA {
+        let law = self.law.as_ref()?;
+        let (vehicle, found) = (law.vehicle(), law.disturbance());
+        let lambda = Model::at(vehicle, state).lambda(step.command.thrust);
+        let mut telemetry = LOAD_TELEMETRY_DATA {
             sequence,
-            xi: step.xi,
-            nu: step.nu,
-            integral: self.law.as_ref().map(Law::integral).unwrap_or_default(),
-            q3: margins.q3,
-            q_b3: margins.q_b3,
-            specific_force: margins.lambda,
-            kappa: margins.kappa,
-            path_det: margins.path_det,
-            reach: margins.reach,
-            cos_phi_squared: margins.cos_phi_squared,
-        })
+            integral: law.integral().map(number),
+            payload_force: found.payload_force(vehicle).into(),
+            uav_force: found.uav_force(vehicle).into(),
+            uav_torque: found.torque.into(),
+            payload_mass: number(found.implied_payload_mass(vehicle, &state.rod, lambda)),
+            warning: step.warning.map_or(LoadFault::empty(), report::margin),
+            ..LOAD_TELEMETRY_DATA::DEFAULT
+        };
+        if let Some(LawAnswer { xi, nu, margins, .. }) = &step.answer {
+            telemetry.xi = xi.map(number);
+            telemetry.nu = nu.map(number);
+            telemetry.q3 = margins.q3;
+            telemetry.q_b3 = margins.q_b3;
+            telemetry.specific_force = margins.lambda;
+            telemetry.kappa = margins.kappa;
+            telemetry.path_det = margins.path_det;
+            telemetry.reach = margins.reach;
+            telemetry.cos_phi_squared = margins.cos_phi_squared;
+        }
+        Some(telemetry)
     }
 }
 
-/// Finite and of a size that can be, with a rod of unit length and a rotation for attitude.
-fn is_plausible(state: &State<f32>) -> bool {
-    let within = |numbers: &[f32]| numbers.iter().all(|x| x.abs() <= LARGEST);
-    let sized = [&state.position, &state.velocity, &state.rod_rate, &state.body_rate]
-        .iter()
-        .all(|vector| within(vector.as_slice()));
-    let near = |x: f32, one: f32| (x - one).abs() <= UNIT_TOLERANCE;
-    let [b1, b2, b3] = [0, 1, 2].map(|i| Vector3::from(state.attitude.column(i)));
-    sized
-        && near(state.rod.dot(&state.rod), 1.0)
-        && near(b1.dot(&b1), 1.0)
-        && near(b2.dot(&b2), 1.0)
-        && near(b3.dot(&b3), 1.0)
-        && near(b1.dot(&b2), 0.0)
-        // Right-handed, and orthogonal to both: the triple product is 1.
-        && near(b1.cross(&b2).dot(&b3), 1.0)
+/// What a good state does to the law's memory before the step on it; `applied` was the last command.
+fn begin(law: &mut Law, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request, applied: &Command<f32>) {
+    let is_off = law.mode() == Mode::Off;
+    let hover = Command { thrust: law.vehicle().hover_thrust(), torque: Vector3::zeros() };
+    let applied = if is_off { hover } else { *applied };
+    match frame.action {
+        LoadAction::LOAD_ACTION_START => law.start(state, frame.zeta),
+        LoadAction::LOAD_ACTION_ENGAGE => law.take_over(state, applied),
+        LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => law.take_over(state, applied),
+        LoadAction::LOAD_ACTION_CONTINUE => {}
+    }
+}
+
+/// Whether the law flies.
+fn is_flying(mode: Mode) -> bool {
+    matches!(mode, Mode::Engage | Mode::Follow)
+}
+
+/// What is none is sent as zero.
+fn number(x: f32) -> f32 {
+    if x.is_finite() { x } else { 0.0 }
 }

@@ -1,12 +1,15 @@
-//! The law that the parameters describe.
+//! The law that the parameters describe, as it flies: path following under the supervisor, or the tracking law under a least guard.
 
 use controller::{
-    Command, Follower, Gains, Margins, Reference, Sampling, SetupError, State, TrackGains, Tracker, Vehicle,
-    VehicleParams,
+    Command, Disturbance, Fault, Follower, Margin, Margins, Mode, Request, SetupError, Solution, State, Supervisor,
+    Vehicle,
 };
 
 use crate::parameters::{Parameter, Parameters};
 use crate::path::{AnyPath, path};
+use crate::rotors::Actuators;
+use crate::setup;
+use crate::track::{Tracked, Tracking};
 
 /// Why a law could not be made of the parameters.
 pub type SetupRefused = SetupError<f32>;
@@ -16,14 +19,9 @@ pub type SetupRefused = SetupError<f32>;
 #[allow(clippy::large_enum_variant)]
 pub enum Law {
     /// Path following.
-    Follow(Follower<f32, AnyPath>),
+    Follow(Supervisor<f32, AnyPath, Actuators>),
     /// Trajectory tracking of a circle.
-    Track {
-        /// The law.
-        tracker: Tracker<f32>,
-        /// Radius (m), p3 (m) and rate (rad/s) of the reference.
-        circle: [f32; 3],
-    },
+    Track(Tracking),
 }
 
 /// What one step of either law gives.
@@ -31,100 +29,119 @@ pub enum Law {
 pub struct Step {
     /// Thrust and torque for the coming hold.
     pub command: Command<f32>,
+    /// What the vehicle is doing.
+    pub mode: Mode,
+    /// Why it is not doing what was asked for.
+    pub fault: Option<Fault>,
+    /// A margin past its warning.
+    pub warning: Option<Margin>,
+    /// The law's own answer, where it was asked.
+    pub answer: Option<LawAnswer>,
+}
+
+/// The numbers of a law's answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawAnswer {
     /// The compensator's input, m/s⁶.
     pub u_zeta: f32,
+    /// ζ at the next sample.
+    pub zeta: [f32; 4],
     /// ξ, padded with zeros to the longer law's 20 numbers.
     pub xi: [f32; 20],
     /// Wanted highest derivatives of the outputs.
     pub nu: [f32; 4],
     /// Distances from the singularities.
     pub margins: Margins<f32>,
+    /// It is more than the actuators give.
+    pub limited: bool,
+}
+
+impl LawAnswer {
+    fn new<X>(solution: &Solution<f32, X>, xi: [&[f32]; 4], zeta: &[f32; 4], actuators: &Actuators) -> Self {
+        let mut padded = [0.0; 20];
+        for (slot, &number) in padded.iter_mut().zip(xi.into_iter().flatten()) {
+            *slot = number;
+        }
+        let limited = actuators.limit(&solution.command);
+        Self { u_zeta: solution.u_zeta, zeta: *zeta, xi: padded, nu: solution.nu, margins: solution.margins, limited }
+    }
 }
 
 impl Law {
-    /// The law of `parameters`, at hover.
+    /// The law of `parameters`, rotors off.
     ///
     /// # Errors
-    /// A parameter the vehicle or path refuses, or gains that make no stable loop.
+    /// A parameter that the controller refuses, or gains that make no stable loop.
     pub fn new(parameters: &Parameters) -> Result<Self, SetupRefused> {
-        let get = |parameter| parameters.get(parameter);
-        let vehicle = Vehicle::new(VehicleParams {
-            payload_mass: get(Parameter::PayloadMass),
-            uav_mass: get(Parameter::UavMass),
-            rod_length: get(Parameter::RodLength),
-            inertia: parameters.run(Parameter::Inertia1),
-            gravity: get(Parameter::Gravity),
-        })?;
-        let sampling = Sampling {
-            period: get(Parameter::Period),
-            latency: get(Parameter::Latency),
-            rotor_lag: get(Parameter::RotorLag),
-            look_ahead: get(Parameter::LookAhead) > 0.5,
-        };
-        if get(Parameter::Law) > 0.5 {
-            let position = [Parameter::K1D0, Parameter::K2D0, Parameter::K3D0].map(|first| parameters.run(first));
-            let gains = TrackGains { position, yaw: parameters.run(Parameter::K4D0) };
-            let circle = [get(Parameter::PathRadius), get(Parameter::PathP3), get(Parameter::ReferenceRate)];
-            return Ok(Self::Track { tracker: Tracker::new(vehicle, gains, sampling)?, circle });
+        if parameters.is_on(Parameter::Law) {
+            return Ok(Self::Track(Tracking::new(parameters)?));
         }
-        let gains = Gains {
-            k1: parameters.run(Parameter::K1D0),
-            k2: parameters.run(Parameter::K2D0),
-            k3: parameters.run(Parameter::K3D0),
-            k4: parameters.run(Parameter::K4D0),
-            integral: parameters.run(Parameter::KI1),
-        };
-        Ok(Self::Follow(Follower::new(vehicle, path(parameters)?, gains, sampling)?))
+        let vehicle = setup::vehicle(parameters)?;
+        let follower =
+            Follower::new(vehicle, path(parameters)?, setup::gains(parameters), setup::sampling(parameters))?
+                .with_actuation(Actuators::new(parameters)?)?
+                .with_observer(&setup::observer(parameters))?;
+        let (envelope, approach) = (setup::envelope(parameters), setup::approach(parameters));
+        Ok(Self::Follow(Supervisor::new(follower, &envelope, approach, setup::policy(parameters))?))
     }
 
     /// Starts from a stated ζ, with the integrals at zero.
     pub fn start(&mut self, state: &State<f32>, zeta: [f32; 4]) {
         match self {
-            Self::Follow(follower) => follower.start(state, zeta),
-            Self::Track { tracker, .. } => tracker.start(state, zeta),
+            Self::Follow(supervisor) => supervisor.start(state, zeta),
+            Self::Track(tracking) => tracking.start(state, zeta),
         }
     }
 
-    /// Takes over from `applied` without a bump in thrust.
-    pub fn engage(&mut self, state: &State<f32>, applied: Command<f32>) {
+    /// Takes over a flying vehicle from `applied`, without a bump in thrust.
+    pub fn take_over(&mut self, state: &State<f32>, applied: Command<f32>) {
         match self {
-            Self::Follow(follower) => follower.engage(state, applied),
-            Self::Track { tracker, .. } => tracker.engage(state, applied),
+            Self::Follow(supervisor) => supervisor.take_over(state, applied),
+            Self::Track(tracking) => tracking.take_over(state, applied),
         }
     }
 
-    /// One control step; `phase` (rad) is where the tracking law's reference is now.
+    /// One control step on whatever state there is. The tracking law takes no request, and has a reference, which is at `phase` (rad) now.
     #[inline]
-    pub fn step(&mut self, state: &State<f32>, phase: f32) -> Step {
-        let mut xi = [0.0; 20];
-        let mut fill = |parts: [&[f32]; 4]| {
-            for (slot, &number) in xi.iter_mut().zip(parts.into_iter().flatten()) {
-                *slot = number;
-            }
-        };
+    pub fn step(&mut self, state: &State<f32>, request: Request, phase: f32) -> Step {
         match self {
-            Self::Follow(follower) => {
-                let solution = follower.step(state);
-                fill([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
-                let controller::Solution { command, u_zeta, nu, margins, .. } = solution;
-                Step { command, u_zeta, xi, nu, margins }
+            Self::Follow(supervisor) => {
+                let output = supervisor.step(state, request);
+                let follower = supervisor.follower();
+                let answer = output.solution.map(|solution| {
+                    let xi = &solution.xi;
+                    LawAnswer::new(&solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4], follower.zeta(), follower.actuation())
+                });
+                let controller::Output { command, mode, fault, warning, .. } = output;
+                Step { command, mode, fault, warning, answer }
             }
-            Self::Track { tracker, circle: [radius, p3, rate] } => {
-                let solution = tracker.step(state, &Reference::circle(*radius, *p3, *rate, phase));
-                let [p1, p2, p3] = &solution.xi.position;
-                fill([p1, p2, p3, &solution.xi.yaw]);
-                let controller::Solution { command, u_zeta, nu, margins, .. } = solution;
-                Step { command, u_zeta, xi, nu, margins }
+            Self::Track(tracking) => {
+                let Tracked { command, fault, solution } = tracking.step(state, phase);
+                let answer = solution.map(|solution| {
+                    let [p1, p2, p3] = &solution.xi.position;
+                    let xi: [&[f32]; 4] = [p1, p2, p3, &solution.xi.yaw];
+                    LawAnswer::new(&solution, xi, tracking.tracker().zeta(), tracking.actuators())
+                });
+                Step { command, mode: tracking.mode(), fault, warning: None, answer }
             }
         }
     }
 
-    /// ζ at the next sample.
+    /// What the vehicle has been doing since the last step.
     #[must_use]
-    pub fn zeta(&self) -> [f32; 4] {
+    pub fn mode(&self) -> Mode {
         match self {
-            Self::Follow(follower) => *follower.zeta(),
-            Self::Track { tracker, .. } => *tracker.zeta(),
+            Self::Follow(supervisor) => supervisor.mode(),
+            Self::Track(tracking) => tracking.mode(),
+        }
+    }
+
+    /// What turns commands into rotor speeds.
+    #[must_use]
+    pub fn actuators(&self) -> &Actuators {
+        match self {
+            Self::Follow(supervisor) => supervisor.follower().actuation(),
+            Self::Track(tracking) => tracking.actuators(),
         }
     }
 
@@ -132,26 +149,26 @@ impl Law {
     #[must_use]
     pub fn integral(&self) -> [f32; 3] {
         match self {
-            Self::Follow(follower) => *follower.integral(),
-            Self::Track { .. } => [0.0; 3],
+            Self::Follow(supervisor) => *supervisor.follower().integral(),
+            Self::Track(_) => [0.0; 3],
         }
     }
 
-    /// The thrust that holds the vehicle at rest, N.
+    /// The disturbances found up to the last sample.
     #[must_use]
-    pub fn hover_thrust(&self) -> f32 {
+    pub fn disturbance(&self) -> &Disturbance<f32> {
         match self {
-            Self::Follow(follower) => follower.vehicle().hover_thrust(),
-            Self::Track { tracker, .. } => tracker.vehicle().hover_thrust(),
+            Self::Follow(supervisor) => supervisor.disturbance(),
+            Self::Track(tracking) => tracking.tracker().disturbance(),
         }
     }
-}
 
-impl Step {
-    /// Whether the command and what is kept of it are numbers.
+    /// The vehicle as the law knows it.
     #[must_use]
-    pub fn is_finite(&self) -> bool {
-        let Command { thrust, torque } = &self.command;
-        thrust.is_finite() && self.u_zeta.is_finite() && torque.iter().all(|x| x.is_finite())
+    pub fn vehicle(&self) -> &Vehicle<f32> {
+        match self {
+            Self::Follow(supervisor) => supervisor.follower().vehicle(),
+            Self::Track(tracking) => tracking.vehicle(),
+        }
     }
 }

@@ -5,7 +5,10 @@ use core::fmt::Write;
 use link::dialect::*;
 use link::{MavMessage, Rejected};
 
+use controller::{Fault, Mode, Request};
+
 use crate::control::{Autopilot, Drive};
+use crate::report;
 
 /// What the caller has to do after a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +25,7 @@ pub enum Next {
 #[derive(Clone, Debug)]
 pub struct Server {
     bad_frames: u32,
-    reported: LoadMode,
+    reported: (Mode, Option<Fault>),
     /// The next parameter of a list that was asked for.
     listing: Option<usize>,
 }
@@ -37,7 +40,7 @@ impl Server {
     /// Nothing received, nothing reported.
     #[must_use]
     pub const fn new() -> Self {
-        Self { bad_frames: 0, reported: LoadMode::LOAD_MODE_OFF, listing: None }
+        Self { bad_frames: 0, reported: (Mode::Off, None), listing: None }
     }
 
     /// What the controller says when it has started: it speaks first, since bytes sent to it before are lost.
@@ -63,13 +66,13 @@ impl Server {
         if autopilot.drive() == Drive::Lockstep {
             base_mode |= MavModeFlag::MAV_MODE_FLAG_HIL_ENABLED as u8;
         }
-        let system_status = match mode {
-            LoadMode::LOAD_MODE_OFF => MavState::MAV_STATE_STANDBY,
-            LoadMode::LOAD_MODE_READY | LoadMode::LOAD_MODE_FLYING => MavState::MAV_STATE_ACTIVE,
-            LoadMode::LOAD_MODE_HOLD | LoadMode::LOAD_MODE_SAFE => MavState::MAV_STATE_CRITICAL,
+        let system_status = match (mode, autopilot.fault()) {
+            (Mode::Off, _) => MavState::MAV_STATE_STANDBY,
+            (Mode::Fault, _) | (Mode::Hold, Some(_)) => MavState::MAV_STATE_CRITICAL,
+            _ => MavState::MAV_STATE_ACTIVE,
         };
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
-            custom_mode: mode as u32,
+            custom_mode: report::mode(mode) as u32,
             mavtype: MavType::MAV_TYPE_QUADROTOR as u8,
             autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC as u8,
             base_mode,
@@ -88,10 +91,10 @@ impl Server {
         })
     }
 
-    /// What there is to say unasked: that the mode has changed, or the next parameter of a list. One message a call, since
+    /// What there is to say unasked: another mode or fault, or the next parameter of a list. One message a call, since
     /// a whole list would keep the control step waiting.
     pub fn news(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
-        if let Some(change) = self.mode_change(autopilot) {
+        if let Some(change) = self.change(autopilot) {
             return Some(change);
         }
         let index = self.listing?;
@@ -100,23 +103,18 @@ impl Server {
         answer
     }
 
-    fn mode_change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
-        let mode = autopilot.mode();
-        if mode == self.reported {
+    fn change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
+        let now @ (mode, fault) = (autopilot.mode(), autopilot.fault());
+        if now == self.reported {
             return None;
         }
-        self.reported = mode;
-        let info = MavSeverity::MAV_SEVERITY_INFO;
-        let critical = MavSeverity::MAV_SEVERITY_CRITICAL;
-        Some(match mode {
-            LoadMode::LOAD_MODE_OFF => status(info, "disarmed"),
-            LoadMode::LOAD_MODE_READY => status(info, "armed, waiting for a state"),
-            LoadMode::LOAD_MODE_FLYING => status(info, "the law flies"),
-            LoadMode::LOAD_MODE_HOLD => {
-                status(MavSeverity::MAV_SEVERITY_WARNING, "no usable state: holding the last command")
-            }
-            LoadMode::LOAD_MODE_SAFE => status(critical, "no usable state: safe command"),
-        })
+        self.reported = now;
+        let severity = match now {
+            (_, None) => MavSeverity::MAV_SEVERITY_INFO,
+            (Mode::Fault, _) | (_, Some(Fault::PayloadLost)) => MavSeverity::MAV_SEVERITY_CRITICAL,
+            _ => MavSeverity::MAV_SEVERITY_WARNING,
+        };
+        Some(status(severity, &report::text(mode, fault, autopilot.is_blind())))
     }
 
     /// Acts on what the decoder found.
@@ -174,7 +172,7 @@ fn value(autopilot: &Autopilot, index: usize) -> Option<MavMessage> {
 fn set(request: &PARAM_SET_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) {
     let name = link::text_of(&*request.param_id);
     let warn = |reason: &str| {
-        let mut text = heapless::String::<50>::new();
+        let mut text = report::Text::new();
         // What doesn't fit is cut: the reason comes first.
         let _ = write!(text, "{reason}: {name}");
         status(MavSeverity::MAV_SEVERITY_WARNING, &text)
@@ -191,27 +189,51 @@ fn set(request: &PARAM_SET_DATA, autopilot: &mut Autopilot, send: &mut impl FnMu
 }
 
 fn command(request: &COMMAND_LONG_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) -> Next {
-    let (mut result, mut next) = (MavResult::MAV_RESULT_ACCEPTED, Next::Nothing);
-    if request.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16 {
+    let mut next = Next::Nothing;
+    let mut denied = |reason: &str| {
+        send(status(MavSeverity::MAV_SEVERITY_WARNING, reason));
+        MavResult::MAV_RESULT_DENIED
+    };
+    let result = if request.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16 {
         if request.param1 < 0.5 {
             autopilot.disarm();
-        } else if let Err(refused) = autopilot.arm() {
-            let mut text = heapless::String::<50>::new();
-            let _ = write!(Cut(&mut text), "{refused}");
-            send(status(MavSeverity::MAV_SEVERITY_WARNING, &text));
-            result = MavResult::MAV_RESULT_DENIED;
+            MavResult::MAV_RESULT_ACCEPTED
+        } else {
+            match autopilot.arm() {
+                Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
+                Err(refused) => {
+                    let mut text = report::Text::new();
+                    let _ = write!(Cut(&mut text), "{refused}");
+                    denied(&text)
+                }
+            }
+        }
+    } else if request.command == MavCmd::MAV_CMD_DO_SET_MODE as u16 {
+        match wanted(request) {
+            None => denied("modes to ask for: idle, follow, hold, land"),
+            Some(wanted) if autopilot.request(wanted) => MavResult::MAV_RESULT_ACCEPTED,
+            Some(_) => denied("the tracking law only follows"),
         }
     } else if request.command == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16 {
-        if autopilot.is_armed() || request.param1 != 1.0 {
-            result = MavResult::MAV_RESULT_DENIED;
+        if autopilot.is_armed() {
+            denied("not while armed")
+        } else if request.param1 != 1.0 {
+            denied("only to reboot")
         } else {
             next = Next::Reboot;
+            MavResult::MAV_RESULT_ACCEPTED
         }
     } else {
-        result = MavResult::MAV_RESULT_UNSUPPORTED;
-    }
+        MavResult::MAV_RESULT_UNSUPPORTED
+    };
     send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command: request.command, result: result as u8 }));
     next
+}
+
+/// What `MAV_CMD_DO_SET_MODE` asks for.
+fn wanted(request: &COMMAND_LONG_DATA) -> Option<Request> {
+    let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
+    if is_custom { report::request(request.param2) } else { None }
 }
 
 fn status(severity: MavSeverity, text: &str) -> MavMessage {
@@ -219,7 +241,7 @@ fn status(severity: MavSeverity, text: &str) -> MavMessage {
 }
 
 /// Writes as much as fits.
-struct Cut<'a>(&'a mut heapless::String<50>);
+struct Cut<'a>(&'a mut report::Text);
 
 impl Write for Cut<'_> {
     fn write_str(&mut self, text: &str) -> core::fmt::Result {

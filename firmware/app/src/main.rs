@@ -231,13 +231,13 @@ mod app {
         board::pend_link();
         if let MavMessage::LOAD_COUNTERS(c) = &counters {
             defmt::info!(
-                "steps {=u32} missed {=u32} refused {=u32} overruns {=u32} law faults {=u32} bad frames {=u32} lost bytes {=u32} \
+                "steps {=u32} missed {=u32} refused {=u32} overruns {=u32} fallbacks {=u32} bad frames {=u32} lost bytes {=u32} \
                  worst {=u32} cycles",
                 c.steps,
                 c.missed,
                 c.refused,
                 c.overruns,
-                c.law_faults,
+                c.fallbacks,
                 c.bad_frames,
                 c.lost_bytes,
                 c.worst_cycles

@@ -96,7 +96,7 @@ pub struct LinkReport {
     /// Real time: periods without a command.
     pub late: u64,
     /// Bits of `LOAD_FAULT` in any answer.
-    pub faults: u16,
+    pub faults: u32,
 }
 
 /// Flights and what the link did in each.

@@ -10,15 +10,20 @@
 mod command;
 mod emulator;
 mod error;
+mod line;
+mod options;
 mod setup;
 mod soft;
+mod statistics;
 mod target;
 mod wire;
 
 pub use command::{Arguments, Flown, LinkReport, fly_all, table};
 pub use emulator::Emulator;
 pub use error::HilError;
+pub use options::{Options, Pace};
 pub use setup::parameters;
 pub use soft::serve;
-pub use target::{Options, Pace, Statistics, Target};
+pub use statistics::Statistics;
+pub use target::Target;
 pub use wire::{Endpoint, Listener, Wire};

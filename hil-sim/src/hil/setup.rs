@@ -1,14 +1,18 @@
 //! A scenario's controller as the target's parameters.
 
 use autopilot::{HARMONICS, Parameter, Parameters};
-use controller::{Gains, TrackGains};
+use controller::{ApproachLimits, Gains, ObserverParams, TrackGains, Vehicle};
 
 use super::HilError;
-use crate::pilot::cast;
+use crate::pilot::{cast, cast_gains, cast_limits, cast_observer, cast_sampling, cast_track_gains};
 use crate::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
 use crate::scenario::{ControllerSpec, Law};
 
-/// The parameters with which the target makes the law that `spec` describes, number by number as this program's f32 law has it.
+/// Sets a run of parameters.
+type Set<'a> = &'a mut dyn FnMut(Parameter, &[f32]) -> Result<(), HilError>;
+
+/// The parameters with which the target makes the law that `spec` describes, number by number as this program's f32 law has it. That is the law
+/// alone: so the target's supervisor gets the widest envelope there is, and rotors that give whatever the law's own limits let through.
 ///
 /// # Errors
 /// [`HilError::Unsupported`] for a path that the target's program does not have, or a number outside a parameter's range.
@@ -23,14 +27,18 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
     set(Parameter::PayloadMass, &[vehicle.payload_mass, vehicle.uav_mass, vehicle.rod_length])?;
     set(Parameter::Inertia1, &vehicle.inertia)?;
     set(Parameter::Gravity, &[vehicle.gravity])?;
-    set(Parameter::Period, &[(1.0 / spec.rate_hz) as f32])?;
-    set(Parameter::LookAhead, &[f32::from(u8::from(spec.look_ahead))])?;
-    // Figures 5 and 6 begin at twice the hover thrust: the limits must not be met, since the law in this program has none.
-    set(Parameter::ThrustMax, &[1e4])?;
-    set(Parameter::TorqueMax, &[1e3])?;
+    let sampling = cast_sampling::<f32>(&spec.sampling());
+    set(Parameter::Period, &[sampling.period, sampling.latency, sampling.rotor_lag, on(sampling.look_ahead)])?;
+    set_observer(&cast_observer(&spec.observer), &mut set)?;
+    let limits = cast_limits::<f32>(&spec.limits);
+    // No limits are 10⁶ of either kind; the target's range ends sooner, and further off than any flight.
+    set(Parameter::ThrustMin, &[limits.min_thrust.max(0.0), limits.max_thrust.min(1e4)])?;
+    set(Parameter::TorqueMax1, &limits.max_torque.map(|torque| torque.min(1e3)))?;
+    let told = Vehicle::new(vehicle).map_err(|error| HilError::Unsupported(error.to_string()))?;
+    set_supervisor(&told, &mut set)?;
     match &spec.law {
         Law::Follow { path, gains } => {
-            let Gains { k1, k2, k3, k4, integral } = crate::pilot::cast_gains::<f32>(gains);
+            let Gains { k1, k2, k3, k4, integral } = cast_gains::<f32>(gains);
             set(Parameter::Law, &[0.0])?;
             set(Parameter::K1D0, &k1)?;
             set(Parameter::K2D0, &k2)?;
@@ -40,7 +48,7 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
             set_path(path, &mut set)?;
         }
         Law::Track { reference, gains } => {
-            let TrackGains { position: [k1, k2, k3], yaw } = crate::pilot::cast_track_gains::<f32>(gains);
+            let TrackGains { position: [k1, k2, k3], yaw } = cast_track_gains::<f32>(gains);
             set(Parameter::Law, &[1.0])?;
             set(Parameter::K1D0, &k1)?;
             set(Parameter::K2D0, &k2)?;
@@ -53,10 +61,32 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
     Ok(parameters)
 }
 
-fn set_path(
-    path: &PathSpec,
-    set: &mut impl FnMut(Parameter, &[f32]) -> Result<(), HilError>,
-) -> Result<(), HilError> {
+/// A switch as a parameter.
+fn on(switch: bool) -> f32 {
+    f32::from(u8::from(switch))
+}
+
+fn set_observer(params: &ObserverParams<f32>, set: Set<'_>) -> Result<(), HilError> {
+    set(Parameter::ObserverPayload, &[params.payload_bandwidth, params.rod_bandwidth, params.torque_bandwidth])?;
+    set(Parameter::ObserverPayloadBound, &[params.payload_bound, params.rod_bound, params.torque_bound])
+}
+
+/// What the law alone does not have: nothing that would ever change what it does.
+fn set_supervisor(vehicle: &Vehicle<f32>, set: Set<'_>) -> Result<(), HilError> {
+    let angles = [1.5; 2];
+    set(Parameter::RodAngleWarning, &angles)?;
+    set(Parameter::ThrustAngleWarning, &angles)?;
+    set(Parameter::RollWarning, &angles)?;
+    // Tension, thrust, path and reach.
+    set(Parameter::TensionWarning, &[0.0; 8])?;
+    set(Parameter::PayloadLost, &[-1.0])?;
+    let ApproachLimits { min_thrust, max_thrust, .. } = ApproachLimits::gentle(vehicle);
+    set(Parameter::ApproachThrustMin, &[min_thrust, max_thrust])?;
+    // 10 kN at full speed each, on arms of 10 m, with as much torque as thrust.
+    set(Parameter::RotorArm, &[10.0, 1e-4, 1e-4, 0.0, 1e4])
+}
+
+fn set_path(path: &PathSpec, set: Set<'_>) -> Result<(), HilError> {
     let unsupported = |what: &str| Err(HilError::Unsupported(format!("{what} is for simulation only")));
     let f = |x: &f64| *x as f32;
     let kind = match &path.curve {

@@ -1,26 +1,6 @@
-//! The parameters, by the names that MAVLink's parameter protocol gives them. All are floats.
+//! The table: what each parameter is called, means and may be.
 
-/// A parameter's name and what it may be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
-    /// At most 16 characters.
-    pub name: &'static str,
-    /// Value after a reset.
-    pub default: f32,
-    /// Least allowed value.
-    pub min: f32,
-    /// Largest allowed value.
-    pub max: f32,
-}
-
-/// Why a parameter was not set.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Refused {
-    /// There is none of that name.
-    Unknown,
-    /// The value is outside the parameter's range, or no number.
-    OutOfRange,
-}
+use super::Entry;
 
 macro_rules! parameters {
     ($($(#[doc = $doc:literal])+ $variant:ident $name:literal = $default:expr, $min:expr, $max:expr;)*) => {
@@ -32,7 +12,7 @@ macro_rules! parameters {
         }
 
         /// All parameters, in the order of [`Parameter`].
-        const TABLE: &[Entry] = &[$(Entry { name: $name, default: $default, min: $min, max: $max },)*];
+        pub(super) const TABLE: &[Entry] = &[$(Entry { name: $name, default: $default, min: $min, max: $max },)*];
     };
 }
 
@@ -265,109 +245,93 @@ parameters! {
     /// Of h3.
     KI3 "KI_3" = 0.0, 0.0, GAIN;
 
-    /// Least thrust that is commanded in flight, N.
+    /// Bandwidth of the observer of the force on the payload, rad/s; 0 is off, here and below.
+    ObserverPayload "OBS_W_LOAD" = 4.0, 0.0, 100.0;
+    /// Of the rod's acceleration beyond the model's, rad/s.
+    ObserverRod "OBS_W_ROD" = 4.0, 0.0, 100.0;
+    /// Of the torque on the UAV, rad/s.
+    ObserverTorque "OBS_W_TAU" = 4.0, 0.0, 100.0;
+    /// Largest force on the payload that it may find, as an acceleration, m/s².
+    ObserverPayloadBound "OBS_MAX_LOAD" = 15.0, 0.0, 1e3;
+    /// Largest acceleration of the rod, 1/s².
+    ObserverRodBound "OBS_MAX_ROD" = 10.0, 0.0, 1e3;
+    /// Largest torque, N·m.
+    ObserverTorqueBound "OBS_MAX_TAU" = 1.0, 0.0, 1e3;
+
+    /// Envelope, a warning and a limit each: angle of the rod from the vertical, rad.
+    RodAngleWarning "ENV_ROD_WARN" = 0.96, 0.0, 1.5;
+    /// Beyond it the law is left for hold, rad; so with each limit below.
+    RodAngleLimit "ENV_ROD_LIM" = 1.22, 0.05, 1.5;
+    /// Angle of the thrust axis from the rod, rad.
+    ThrustAngleWarning "ENV_AXIS_WARN" = 0.96, 0.0, 1.5;
+    /// Its limit.
+    ThrustAngleLimit "ENV_AXIS_LIM" = 1.22, 0.05, 1.5;
+    /// Roll of the yaw's chart, rad.
+    RollWarning "ENV_ROLL_WARN" = 0.96, 0.0, 1.5;
+    /// Its limit.
+    RollLimit "ENV_ROLL_LIM" = 1.22, 0.05, 1.5;
+    /// Tension of the rod, N, up to the payload's weight.
+    TensionWarning "ENV_TENS_WARN" = 1.2, 0.0, 1e4;
+    /// Its limit.
+    TensionLimit "ENV_TENS_LIM" = 0.5, 0.0, 1e4;
+    /// Thrust, N, up to hover's.
+    ThrustWarning "ENV_T_WARN" = 7.4, 0.0, 1e4;
+    /// Its limit.
+    ThrustLimit "ENV_T_LIM" = 2.9, 0.0, 1e4;
+    /// Determinant of the path's system, as a share of its value on the path.
+    PathWarning "ENV_PATH_WARN" = 0.2, 0.0, 1.0;
+    /// Its limit.
+    PathLimit "ENV_PATH_LIM" = 0.1, 0.0, 1.0;
+    /// What is left of the path's reach, as a share.
+    ReachWarning "ENV_REACH_WARN" = 0.2, 0.0, 1.0;
+    /// Its limit.
+    ReachLimit "ENV_REACH_LIM" = 0.05, 0.0, 1.0;
+
+    /// Joining the path: speed of the slide, m/s.
+    ApproachSpeed "APP_SPEED" = 3.0, 0.01, 100.0;
+    /// Its acceleration, m/s².
+    ApproachAcceleration "APP_ACC" = 1.5, 0.01, 100.0;
+    /// Tilt of the thrust, rad.
+    ApproachTilt "APP_TILT" = 0.35, 0.01, 1.2;
+    /// Angle of the rod from the vertical, rad.
+    ApproachRodAngle "APP_ROD" = 0.35, 0.01, 1.2;
+    /// Least thrust, N, below hover's.
+    ApproachThrustMin "APP_T_MIN" = 20.6, 0.0, 1e4;
+    /// Largest thrust, N, above hover's.
+    ApproachThrustMax "APP_T_MAX" = 38.3, 0.1, 1e4;
+
+    /// How long the last command goes on without a good state, s. The tracking law has no such time.
+    Coast "POL_COAST" = 0.1, 0.0, 10.0;
+    /// Then: thrust as a share of hover's, without torque, until a good state; negative: rotors cut, until disarmed.
+    Sink "POL_SINK" = 0.9, -1.0, 1.0;
+    /// 1: go back to the path by itself, from hold; 0: once it is asked for again.
+    Resume "POL_RESUME" = 1.0, 0.0, 1.0;
+    /// How long the vehicle must have been calm before it does, s.
+    Calm "POL_CALM" = 1.0, 0.0, 100.0;
+    /// Speed of a landing, m/s.
+    Descent "POL_DESCENT" = 0.5, 0.01, 10.0;
+    /// Share of the payload's mass below which it counts as lost; negative: never.
+    PayloadLost "POL_LOAD_LOST" = 0.3, -1.0, 0.95;
+
+    /// Least thrust that the law may ask for in flight, N. Roll and pitch may need more or less of it.
     ThrustMin "LIM_T_MIN" = 0.0, 0.0, 1e4;
-    /// Largest thrust, N.
-    ThrustMax "LIM_T_MAX" = 100.0, 0.1, 1e4;
-    /// Largest torque about each axis, N·m.
-    TorqueMax "LIM_TAU" = 10.0, 1e-3, 1e3;
-    /// How long the last command is held when states stop coming or can't be used, s.
-    HoldTime "HOLD_TIME" = 0.1, 0.0, 10.0;
-    /// The safe command after that: this thrust, N, without torque. The default lets Table I's vehicle sink slowly.
-    SafeThrust "SAFE_THRUST" = 28.0, 0.0, 1e4;
+    /// Largest thrust, N; likewise.
+    ThrustMax "LIM_T_MAX" = 60.0, 0.1, 1e4;
+    /// Largest torque about b1, N·m.
+    TorqueMax1 "LIM_TAU_1" = 3.0, 0.0, 1e3;
+    /// About b2.
+    TorqueMax2 "LIM_TAU_2" = 3.0, 0.0, 1e3;
+    /// About b3.
+    TorqueMax3 "LIM_TAU_3" = 1.0, 0.0, 1e3;
 
     /// Rotor's distance from the axes b1 and b2 (X configuration), m.
     RotorArm "ROT_ARM" = 0.25, 0.01, 10.0;
-    /// Rotor's drag torque over its thrust, m.
-    RotorDrag "ROT_DRAG" = 0.05, 1e-4, 1.0;
-    /// Rotor's thrust at full command, N.
-    RotorThrust "ROT_F_MAX" = 25.0, 0.1, 1e4;
+    /// Rotor's thrust over its speed squared, N/(rad/s)².
+    RotorThrust "ROT_KT" = 2e-5, 1e-10, 1.0;
+    /// Rotor's drag torque over its speed squared, N·m/(rad/s)².
+    RotorTorque "ROT_KQ" = 4e-7, 1e-12, 1.0;
+    /// Speed of an armed rotor at least, rad/s.
+    RotorSpeedMin "ROT_W_MIN" = 100.0, 0.0, 1e5;
+    /// Rotor's speed at full command, rad/s; at most 0.9 of it may be the least.
+    RotorSpeedMax "ROT_W_MAX" = 1100.0, 1.0, 1e5;
 }
-
-/// The table's values.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameters([f32; TABLE.len()]);
-
-impl Default for Parameters {
-    fn default() -> Self {
-        Self(core::array::from_fn(|index| TABLE.get(index).map_or(0.0, |entry| entry.default)))
-    }
-}
-
-impl Parameters {
-    /// How many there are.
-    pub const COUNT: usize = TABLE.len();
-
-    /// A value.
-    #[must_use]
-    pub fn get(&self, parameter: Parameter) -> f32 {
-        self.0.get(parameter as usize).copied().unwrap_or_default()
-    }
-
-    /// Sets a value in code, where its range is known to hold: a value outside is moved to the range's end.
-    pub fn set(&mut self, parameter: Parameter, value: f32) {
-        if let (Some(slot), Some(entry)) = (self.0.get_mut(parameter as usize), TABLE.get(parameter as usize)) {
-            *slot = if value >= entry.min { value.min(entry.max) } else { entry.min };
-        }
-    }
-
-    /// Sets a value by name. Returns its index.
-    ///
-    /// # Errors
-    /// [`Refused`]; the value is then what it was.
-    pub fn set_by_name(&mut self, name: &str, value: f32) -> Result<usize, Refused> {
-        let index = Self::index(name).ok_or(Refused::Unknown)?;
-        let entry = TABLE.get(index).ok_or(Refused::Unknown)?;
-        if !(value >= entry.min && value <= entry.max) {
-            return Err(Refused::OutOfRange);
-        }
-        *self.0.get_mut(index).ok_or(Refused::Unknown)? = value;
-        Ok(index)
-    }
-
-    /// Where the parameter of that name stands.
-    #[must_use]
-    pub fn index(name: &str) -> Option<usize> {
-        TABLE.iter().position(|entry| entry.name == name)
-    }
-
-    /// The entry and value at an index.
-    #[must_use]
-    pub fn at(&self, index: usize) -> Option<(&'static Entry, f32)> {
-        Some((TABLE.get(index)?, *self.0.get(index)?))
-    }
-
-    /// All entries with their values.
-    pub fn iter(&self) -> impl Iterator<Item = (&'static Entry, f32)> + '_ {
-        TABLE.iter().zip(self.0)
-    }
-
-    /// A run of consecutive parameters from `first` on, as the gains of one output are.
-    #[must_use]
-    pub(crate) fn run<const N: usize>(&self, first: Parameter) -> [f32; N] {
-        core::array::from_fn(|offset| self.0.get(first as usize + offset).copied().unwrap_or_default())
-    }
-
-    /// Sets a run of consecutive parameters from `first` on.
-    ///
-    /// # Errors
-    /// [`Refused::OutOfRange`] at the first value outside its range.
-    pub fn set_run(&mut self, first: Parameter, values: &[f32]) -> Result<(), Refused> {
-        for (offset, &value) in values.iter().enumerate() {
-            let entry = TABLE.get(first as usize + offset).ok_or(Refused::Unknown)?;
-            self.set_by_name(entry.name, value)?;
-        }
-        Ok(())
-    }
-}
-
-const _: () = {
-    let mut index = 0;
-    while index < TABLE.len() {
-        #[allow(clippy::indexing_slicing)]
-        let entry = &TABLE[index];
-        assert!(entry.name.len() <= 16, "a MAVLink parameter's name has at most 16 characters");
-        assert!(entry.min <= entry.default && entry.default <= entry.max);
-        index += 1;
-    }
-};
