@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use controller::State;
+use controller::{ActuatorLimits, ObserverParams, State};
 use hil_sim::hil::{Emulator, Endpoint, HilError, Options, Pace, Target, Wire, serve};
 use hil_sim::pilot::{Answers, Decision, Pilot};
 use hil_sim::run::{self, Arithmetic, End, Flight};
@@ -46,6 +46,20 @@ fn scenario(name: &str, duration_s: f64) -> Scenario {
     scenario.duration_s = scenario.duration_s.min(duration_s);
     scenario.steady_from_s = None;
     scenario
+}
+
+/// The paper's figures, and one flight with what they leave off: observers against a wrong mass, limits that are met, a latency and a lag to look ahead for.
+fn flights(duration_s: f64) -> Vec<Scenario> {
+    let mut flights: Vec<Scenario> = FIGURES.iter().map(|(name, _)| scenario(name, duration_s)).collect();
+    let mut observed = scenario("fig5-no-integral", duration_s);
+    observed.name = "observed".to_owned();
+    let controller = &mut observed.controller;
+    controller.observer = ObserverParams::with_bandwidth(4.0);
+    controller.limits = ActuatorLimits { min_thrust: 5.0, max_thrust: 40.0, max_torque: [0.5, 0.75, 0.25] };
+    controller.latency_s = 0.002;
+    controller.rotor_lag_s = 0.005;
+    flights.push(observed);
+    flights
 }
 
 fn fly<A: Answers>(scenario: &Scenario, controller: &mut A) -> Flight {
@@ -96,12 +110,21 @@ fn soft_target<W: Wire + 'static>(
 #[test]
 fn the_figures_are_the_same_over_the_link() {
     let mut target = soft_target(OPTIONS, |stream| stream).unwrap();
-    for (name, _) in FIGURES {
-        let scenario = scenario(name, 2.0);
+    for scenario in flights(2.0) {
         let (commands, back) = fly_there(&scenario, target);
-        assert_eq!(commands.unwrap(), fly_here(&scenario), "{name}");
+        assert_eq!(commands.unwrap(), fly_here(&scenario), "{}", scenario.name);
         target = back;
     }
+}
+
+#[test]
+fn the_observed_flight_meets_its_limits() {
+    let observed = flights(2.0).pop().expect("it is the last");
+    let commands = fly_here(&observed);
+    let ActuatorLimits { min_thrust, max_thrust, max_torque: [roll, pitch, yaw] } = observed.controller.limits;
+    let met = |index: usize, limit: f64| commands.iter().any(|command| command[index] == (limit as f32).to_bits());
+    assert!(met(0, min_thrust) || met(0, max_thrust));
+    assert!(met(1, roll) || met(2, pitch) || met(3, yaw));
 }
 
 /// Changes one byte of a hundred, both ways.
@@ -379,10 +402,9 @@ fn the_figures_are_the_same_on_every_emulated_board() {
     let Some(images) = images() else { return };
     for (machine, image) in images {
         let mut target = emulated(machine, &image, OPTIONS);
-        for (name, _) in FIGURES {
-            let scenario = scenario(name, EMULATED_S);
+        for scenario in flights(EMULATED_S) {
             let (commands, back) = fly_there(&scenario, target);
-            assert_eq!(commands.unwrap(), fly_here(&scenario), "{name} on {machine}");
+            assert_eq!(commands.unwrap(), fly_here(&scenario), "{} on {machine}", scenario.name);
             target = back;
         }
     }

@@ -1,0 +1,144 @@
+//! Whatever bytes come over the link, in whatever order, what goes out is finite and what the rotors can give.
+
+use autopilot::{Autopilot, Boot, Parameters};
+use link::MavMessage;
+use link::dialect::*;
+use proptest::prelude::*;
+
+use crate::rig::{Rig, frame_of, is_flyable, start};
+
+/// Something that comes over the link.
+#[derive(Clone, Debug)]
+enum Event {
+    /// A state with some of its numbers replaced by any bits.
+    State {
+        action: u8,
+        words: Vec<(usize, u32)>,
+    },
+    /// A parameter, as a share of its range or as any bits.
+    Parameter {
+        index: usize,
+        share: f32,
+        bits: Option<u32>,
+    },
+    Command {
+        command: u16,
+        param1: f32,
+        param2: f32,
+    },
+    Noise(Vec<u8>),
+    /// A frame cut short.
+    Cut(usize),
+    /// Time goes by.
+    Ticks(u8),
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let any_word = (0_usize..29, any::<u32>());
+    prop_oneof![
+        6 => (0_u8..4, prop::collection::vec(any_word, 0..3)).prop_map(|(action, words)| Event::State { action, words }),
+        3 => (0..Parameters::COUNT, 0.0_f32..=1.0, prop::option::of(any::<u32>()))
+            .prop_map(|(index, share, bits)| Event::Parameter { index, share, bits }),
+        4 => (prop_oneof![Just(400), Just(176), Just(246), any::<u16>()], 0_u8..3, 0_u8..8).prop_map(
+            |(command, param1, param2)| Event::Command { command, param1: param1.into(), param2: param2.into() }
+        ),
+        1 => prop::collection::vec(any::<u8>(), 0..80).prop_map(Event::Noise),
+        1 => (0_usize..100).prop_map(Event::Cut),
+        3 => (1_u8..80).prop_map(Event::Ticks),
+    ]
+}
+
+/// A good state, then spoilt.
+fn state(sequence: u32, action: u8, words: &[(usize, u32)]) -> MavMessage {
+    let mut frame = frame_of(&start(), sequence);
+    frame.action = match action {
+        0 => LoadAction::LOAD_ACTION_START,
+        1 => LoadAction::LOAD_ACTION_ENGAGE,
+        _ => LoadAction::LOAD_ACTION_CONTINUE,
+    };
+    for &(index, word) in words {
+        let fields = [
+            &mut frame.position[..],
+            &mut frame.velocity,
+            &mut frame.rod,
+            &mut frame.rod_rate,
+            &mut frame.attitude,
+            &mut frame.body_rate,
+            std::slice::from_mut(&mut frame.reference_phase),
+            &mut frame.zeta,
+        ];
+        if let Some(slot) = fields.into_iter().flatten().nth(index) {
+            *slot = f32::from_bits(word);
+        }
+    }
+    MavMessage::LOAD_STATE(frame)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1500))]
+
+    #[test]
+    fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60)) {
+        let mut rig = Rig::new(Autopilot::new(Boot::default()));
+        let mut sequence = 0;
+        for event in events {
+            let bytes = match event {
+                Event::State { action, words } => {
+                    sequence += 1;
+                    rig.encode(&state(sequence, action, &words))
+                }
+                Event::Parameter { index, share, bits } => {
+                    let (entry, _) = rig.autopilot.parameters().at(index).expect("it is one of the table's");
+                    let param_value = bits.map_or(entry.min + share * (entry.max - entry.min), f32::from_bits);
+                    let name = link::name(entry.name);
+                    rig.encode(&MavMessage::PARAM_SET(PARAM_SET_DATA { param_value, param_id: name, ..PARAM_SET_DATA::DEFAULT }))
+                }
+                Event::Command { command, param1, param2 } => rig.encode(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+                    param1,
+                    param2,
+                    command,
+                    ..COMMAND_LONG_DATA::DEFAULT
+                })),
+                Event::Noise(bytes) => bytes,
+                Event::Cut(length) => {
+                    let mut bytes = rig.encode(&state(sequence, 2, &[]));
+                    bytes.truncate(length);
+                    bytes
+                }
+                Event::Ticks(count) => {
+                    for _ in 0..count {
+                        let answer = rig.autopilot.tick();
+                        prop_assert!(is_flyable(&answer, rig.autopilot.parameters()), "{:?}", answer);
+                        prop_assert!(rig.autopilot.is_armed() || answer.outputs == [0.0; 4]);
+                    }
+                    continue;
+                }
+            };
+            let (_, answers) = rig.hear(&bytes);
+            for answer in answers {
+                prop_assert!(is_flyable(&answer, rig.autopilot.parameters()), "{:?}", answer);
+                prop_assert_eq!(answer.outputs, [0.0; 4]);
+            }
+        }
+    }
+}
+
+/// The bits of any states, over a flight that is otherwise good.
+#[test]
+fn one_bad_number_at_a_time_leads_nowhere() {
+    let odd =
+        [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1.0, -1.0];
+    for index in 0..29 {
+        for value in odd {
+            let mut rig = Rig::new(Autopilot::new(Boot::default()));
+            rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+            for sequence in 1..20 {
+                let words = if sequence % 3 == 0 { vec![(index, value.to_bits())] } else { vec![] };
+                let bytes = rig.encode(&state(sequence, 2, &words));
+                rig.hear(&bytes);
+                let answer = rig.autopilot.tick();
+                assert!(is_flyable(&answer, rig.autopilot.parameters()), "{index} {value}: {answer:?}");
+            }
+        }
+    }
+}

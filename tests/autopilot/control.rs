@@ -1,0 +1,251 @@
+//! When the law is stepped, on which state, and what is counted and reported.
+
+use autopilot::{Autopilot, Boot, Parameter, Parameters, Refused, Server};
+use controller::{Mode, Request};
+use link::MavMessage;
+use link::dialect::*;
+use proptest::prelude::*;
+
+use crate::rig::{Rig, armed, driven, fly, frame, is_flyable};
+
+#[test]
+fn nothing_turns_unless_armed_and_given_a_state() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    let answer = fly(&mut autopilot, 1);
+    assert_eq!(answer.outputs, [0.0; 4]);
+    assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_NOT_ARMED));
+
+    autopilot.arm().unwrap();
+    assert_eq!((autopilot.tick().outputs, autopilot.mode()), ([0.0; 4], Mode::Off));
+
+    let answer = fly(&mut autopilot, 2);
+    assert_eq!(autopilot.mode(), Mode::Engage);
+    assert!(answer.outputs.iter().all(|&duty| duty > 0.3), "{answer:?}");
+
+    autopilot.disarm();
+    assert_eq!(fly(&mut autopilot, 3).outputs, [0.0; 4]);
+}
+
+#[test]
+fn a_simulated_vehicle_turns_no_rotor() {
+    for simulate in [1.0, 2.0] {
+        let mut autopilot = armed(simulate);
+        let answer = if simulate < 1.5 {
+            autopilot.lockstep(&LOAD_STATE_DATA { action: LoadAction::LOAD_ACTION_START, ..frame(1) })
+        } else {
+            fly(&mut autopilot, 1)
+        };
+        assert!(answer.command.rotor.iter().all(|&duty| duty > 0.3));
+        assert_eq!(answer.outputs, [0.0; 4]);
+    }
+}
+
+#[test]
+fn on_the_ground_it_idles_until_it_is_asked_to_fly() {
+    let mut autopilot = driven(0.0);
+    assert!(autopilot.request(Request::Idle));
+    autopilot.arm().unwrap();
+    let idle = fly(&mut autopilot, 1);
+    assert_eq!(autopilot.mode(), Mode::Idle);
+    assert!(idle.outputs.iter().all(|&duty| duty > 0.05 && duty < 0.12), "{idle:?}");
+    assert!(autopilot.request(Request::Hold));
+    fly(&mut autopilot, 2);
+    assert_eq!(autopilot.mode(), Mode::Hold);
+}
+
+#[test]
+fn a_lost_state_is_coasted_over_then_sunk_from_then_flown_again() {
+    let mut autopilot = armed(0.0);
+    fly(&mut autopilot, 1);
+    let last = fly(&mut autopilot, 2);
+    // 0.1 s of coasting at 2 ms, to within the sum's rounding.
+    for _ in 0..49 {
+        let answer = autopilot.tick();
+        assert_eq!((answer.outputs, autopilot.mode()), (last.outputs, Mode::Engage));
+        assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
+    }
+    autopilot.tick();
+    for _ in 0..1000 {
+        let answer = autopilot.tick();
+        assert_eq!(autopilot.mode(), Mode::Fault);
+        assert_eq!((answer.command.thrust, answer.command.torque), (0.9 * 3.0 * 9.81, [0.0; 3]));
+    }
+    assert_eq!((autopilot.counters().missed, autopilot.counters().fallbacks), (1050, 1));
+    let again = fly(&mut autopilot, 3);
+    assert_eq!(autopilot.mode(), Mode::Hold);
+    // Without a bump: from the sinking's thrust on.
+    assert!((again.command.thrust - 0.9 * 3.0 * 9.81).abs() < 0.2, "{}", again.command.thrust);
+}
+
+#[test]
+fn rotors_that_were_cut_stay_so_until_it_is_armed_anew() {
+    for law in [0.0, 1.0] {
+        let mut autopilot = driven(0.0);
+        let parameters = autopilot.parameters_mut().unwrap();
+        parameters.set(Parameter::Sink, -1.0);
+        parameters.set(Parameter::Law, law);
+        if law > 0.5 {
+            parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
+        }
+        autopilot.arm().unwrap();
+        assert!(fly(&mut autopilot, 1).outputs.iter().all(|&duty| duty > 0.3));
+        let cut = (0..60).map(|_| autopilot.tick()).last().unwrap();
+        assert_eq!((cut.outputs, autopilot.mode()), ([0.0; 4], Mode::Fault), "law {law}");
+        assert_eq!((fly(&mut autopilot, 2).outputs, autopilot.mode()), ([0.0; 4], Mode::Fault), "law {law}");
+        autopilot.disarm();
+        autopilot.arm().unwrap();
+        assert!(fly(&mut autopilot, 3).outputs.iter().all(|&duty| duty > 0.3), "law {law}");
+    }
+}
+
+#[test]
+fn the_tracking_law_has_a_guard_of_its_own() {
+    let mut autopilot = driven(0.0);
+    let parameters = autopilot.parameters_mut().unwrap();
+    parameters.set(Parameter::Law, 1.0);
+    parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
+    assert!(!autopilot.request(Request::Hold));
+    autopilot.arm().unwrap();
+    assert_eq!(autopilot.tick().outputs, [0.0; 4]);
+    let parameters = autopilot.parameters().clone();
+    for (sequence, phase) in (1..).zip([0.0, f32::NAN, 0.0, f32::INFINITY, 0.0]) {
+        autopilot.receive(&LOAD_STATE_DATA { reference_phase: phase, ..frame(sequence) });
+        let answer = autopilot.tick();
+        assert!(is_flyable(&answer, &parameters), "{answer:?}");
+        let (mode, faults) = (autopilot.mode(), answer.command.faults);
+        let expected = if phase.is_finite() { Mode::Follow } else { Mode::Fault };
+        assert_eq!((mode, faults.contains(LoadFault::LOAD_FAULT_LAW)), (expected, !phase.is_finite()), "{sequence}");
+    }
+    assert_eq!(autopilot.counters().fallbacks, 2);
+    assert_eq!(autopilot.tick().command.thrust, 0.9 * 3.0 * 9.81);
+}
+
+#[test]
+fn old_and_bad_states_are_refused_counted_and_named() {
+    let mut rig = Rig::new(armed(0.0));
+    fly(&mut rig.autopilot, 5);
+    rig.news();
+    assert!(fly(&mut rig.autopilot, 4).command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
+    assert_eq!((rig.autopilot.mode(), rig.autopilot.counters().refused), (Mode::Engage, 1));
+    assert_eq!(rig.news(), ["joining the path: no state"]);
+
+    let spoil: [(&str, fn(&mut LOAD_STATE_DATA)); 6] = [
+        ("position", |frame| frame.position[1] = f32::NAN),
+        ("velocity", |frame| frame.velocity[0] = f32::INFINITY),
+        ("rod", |frame| frame.rod[2] = 1.2),
+        ("attitude", |frame| frame.attitude[0] = -1.0),
+        ("body rate", |frame| frame.body_rate[2] = 1e30),
+        // As a state that is missing: no position.
+        ("position", |frame| frame.zeta[3] = f32::NAN),
+    ];
+    for (sequence, (name, spoil)) in (6..).zip(spoil) {
+        let mut frame = frame(sequence);
+        spoil(&mut frame);
+        rig.autopilot.receive(&frame);
+        let answer = rig.autopilot.tick();
+        assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_BAD_STATE), "{name}");
+        assert_eq!(rig.autopilot.mode(), Mode::Engage, "{name}");
+        let said = rig.news();
+        // What was said last is not said again.
+        assert!(sequence == 6 || said == [format!("joining the path: bad {name}")], "{said:?}");
+    }
+    assert_eq!(rig.autopilot.counters().refused, 7);
+}
+
+#[test]
+fn an_overrun_is_counted_and_reported_once() {
+    let mut autopilot = armed(0.0);
+    fly(&mut autopilot, 1);
+    autopilot.note_overrun();
+    assert!(fly(&mut autopilot, 2).command.faults.contains(LoadFault::LOAD_FAULT_OVERRUN));
+    assert!(!fly(&mut autopilot, 3).command.faults.contains(LoadFault::LOAD_FAULT_OVERRUN));
+    assert_eq!(autopilot.counters().overruns, 1);
+}
+
+#[test]
+fn a_watchdog_reset_is_said_at_once_and_in_every_answer() {
+    let boot = Boot { by_watchdog: true, watchdog_resets: 3, internal_clock: true, core_hz: 16_000_000 };
+    let mut autopilot = Autopilot::new(boot);
+    let mut said = Vec::new();
+    Server::new().greet(&autopilot, &mut |message| said.push(message));
+    let texts = said.iter().filter(|message| matches!(message, MavMessage::STATUSTEXT(_))).count();
+    assert!(matches!(said[0], MavMessage::HEARTBEAT(_)));
+    assert_eq!(texts, 2);
+    let faults = autopilot.tick().command.faults;
+    assert!(faults.contains(LoadFault::LOAD_FAULT_WATCHDOG | LoadFault::LOAD_FAULT_INTERNAL_CLOCK));
+    assert_eq!(autopilot.counters_message().watchdog_resets, 3);
+}
+
+#[test]
+fn lockstep_answers_the_same_question_the_same_way() {
+    let mut autopilot = armed(1.0);
+    let first = LOAD_STATE_DATA { action: LoadAction::LOAD_ACTION_START, ..frame(10) };
+    let answer = autopilot.lockstep(&first);
+    assert_eq!(autopilot.lockstep(&first), answer);
+    assert_eq!(autopilot.counters().steps, 1);
+    // A number that is not the next one: a reset at one of the ends.
+    assert!(autopilot.lockstep(&frame(12)).command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE));
+    assert_eq!(autopilot.counters().steps, 1);
+    assert!(!autopilot.lockstep(&frame(11)).command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE));
+    assert_eq!(autopilot.counters().steps, 2);
+    // Armed anew and not told to start.
+    let mut fresh = armed(1.0);
+    assert!(fresh.lockstep(&frame(13)).command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE));
+}
+
+#[test]
+fn parameters_are_kept_in_range_and_closed_in_flight() {
+    let mut parameters = Parameters::default();
+    assert_eq!(parameters.set_by_name("VEH_M_LOAD", -1.0), Err(Refused::OutOfRange));
+    assert_eq!(parameters.set_by_name("VEH_M_LOAD", f32::NAN), Err(Refused::OutOfRange));
+    assert_eq!(parameters.set_by_name("NO_SUCH", 1.0), Err(Refused::Unknown));
+    assert_eq!(parameters.set_by_name("LINK_DIALECT", 0.0), Err(Refused::OutOfRange));
+    assert!(parameters.set_by_name("VEH_M_LOAD", 0.75).is_ok());
+    assert_eq!(parameters.get(Parameter::PayloadMass), 0.75);
+    assert!(armed(0.0).parameters_mut().is_none());
+}
+
+#[test]
+fn an_unstable_law_is_not_armed_with() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.parameters_mut().unwrap().set(Parameter::K1D0, -1.0);
+    let mut rig = Rig::new(autopilot);
+    let (result, said) = rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    assert_eq!((result, said.len()), (MavResult::MAV_RESULT_DENIED as u8, 1), "{said:?}");
+    assert!(!rig.autopilot.is_armed());
+}
+
+#[test]
+fn a_number_that_the_controller_refuses_is_named_with_its_range() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    let parameters = autopilot.parameters_mut().unwrap();
+    parameters.set(Parameter::PayloadMass, 0.125);
+    parameters.set(Parameter::Gravity, 8.0);
+    let (result, said) = Rig::new(autopilot).command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8);
+    assert_eq!(said, ["tension = 1.2 is outside 0.5 to 1"]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Any bits for a state, on top of good ones: what goes out is finite and within limits.
+    #[test]
+    fn whatever_comes_in(words in prop::collection::vec(any::<u32>(), 30), every in 1_usize..30, steps in 1_u32..8) {
+        let mut autopilot = armed(0.0);
+        let parameters = autopilot.parameters().clone();
+        for sequence in 1..=steps {
+            let mut frame = frame(sequence);
+            let fields = [&mut frame.position[..], &mut frame.velocity, &mut frame.rod, &mut frame.rod_rate, &mut frame.attitude, &mut frame.body_rate];
+            for (slot, word) in fields.into_iter().flatten().zip(&words).skip(sequence as usize).step_by(every) {
+                *slot = f32::from_bits(*word);
+            }
+            autopilot.receive(&frame);
+            prop_assert!(is_flyable(&autopilot.tick(), &parameters));
+        }
+        // And the next good one is flown.
+        let answer = fly(&mut autopilot, steps + 1);
+        prop_assert!(is_flyable(&answer, &parameters));
+        prop_assert!(matches!(autopilot.mode(), Mode::Engage | Mode::Hold), "{:?}", autopilot.mode());
+    }
+}

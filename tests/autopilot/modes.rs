@@ -1,0 +1,221 @@
+//! A vehicle in flight on the program, rotors and all: requests over the link, the envelope, and states that fail.
+
+use autopilot::{Answer, Autopilot, Boot, Parameter};
+use controller::{Command, Mode, State, Vector3};
+use hil_sim::multibody::{Loads, Multibody};
+use hil_sim::plant::VehicleParameters;
+use link::dialect::*;
+
+use crate::rig::{Rig, frame_of, is_flyable, start};
+
+const PERIOD: f64 = 0.002;
+
+/// The plant under the program.
+struct Flight {
+    rig: Rig,
+    body: Multibody,
+    sequence: u32,
+}
+
+impl Flight {
+    /// Armed, at rest 1 m outside the circle.
+    fn new() -> Self {
+        Self::of(Autopilot::new(Boot::default()))
+    }
+
+    fn of(autopilot: Autopilot) -> Self {
+        let mut rig = Rig::new(autopilot);
+        let (result, said) = rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+        assert_eq!(result, MavResult::MAV_RESULT_ACCEPTED as u8, "{said:?}");
+        Self { rig, body: Multibody::new(VehicleParameters::default(), &start().cast()), sequence: 0 }
+    }
+
+    /// A control period in which the program sees `frame`, if anything.
+    fn step_seeing(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
+        if let Some(frame) = frame {
+            self.rig.autopilot.receive(frame);
+        }
+        let answer = self.rig.autopilot.tick();
+        assert!(is_flyable(&answer, self.rig.autopilot.parameters()), "{answer:?}");
+        let LOAD_COMMAND_DATA { thrust, torque, .. } = &answer.command;
+        let command = Command { thrust: f64::from(*thrust), torque: Vector3::from(*torque).map(f64::from) };
+        self.body.advance(PERIOD, |_| command, |_, _| Loads::none());
+        assert!(self.body.is_finite());
+        answer
+    }
+
+    fn next_frame(&mut self) -> LOAD_STATE_DATA {
+        self.sequence += 1;
+        frame_of(&self.body.state().cast(), self.sequence)
+    }
+
+    fn step(&mut self) -> Answer {
+        let frame = self.next_frame();
+        self.step_seeing(Some(&frame))
+    }
+
+    /// A period in which the program sees the rod almost level.
+    fn step_leaning(&mut self) -> Answer {
+        let (sin, cos) = 1.4_f32.sin_cos();
+        let frame = LOAD_STATE_DATA { rod: [sin, 0.0, cos], ..self.next_frame() };
+        self.step_seeing(Some(&frame))
+    }
+
+    fn mode(&self) -> Mode {
+        self.rig.autopilot.mode()
+    }
+
+    /// Up to `seconds`, until `mode` is reached.
+    fn until(&mut self, mode: Mode, seconds: f64) {
+        for _ in 0..(seconds / PERIOD) as usize {
+            self.step();
+            if self.mode() == mode {
+                return;
+            }
+        }
+        panic!("{mode:?} not reached in {seconds} s: {:?}, {:?}", self.mode(), self.rig.autopilot.fault());
+    }
+
+    fn ask(&mut self, mode: LoadMode) {
+        assert_eq!(self.rig.ask(mode).0, MavResult::MAV_RESULT_ACCEPTED as u8);
+    }
+}
+
+#[test]
+fn what_the_pilot_asks_for_over_the_link_is_done() {
+    let mut flight = Flight::new();
+    flight.until(Mode::Follow, 30.0);
+    assert_eq!(flight.rig.news(), ["on the path"]);
+    flight.ask(LoadMode::LOAD_MODE_HOLD);
+    flight.step();
+    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Hold, vec!["hold".to_owned()]));
+    flight.ask(LoadMode::LOAD_MODE_FOLLOW);
+    flight.step();
+    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Engage, vec!["joining the path".to_owned()]));
+    flight.until(Mode::Follow, 30.0);
+    // In flight, to idle is to hold.
+    flight.ask(LoadMode::LOAD_MODE_IDLE);
+    flight.step();
+    assert_eq!(flight.mode(), Mode::Hold);
+    assert_eq!(flight.rig.autopilot.counters().fallbacks, 0);
+}
+
+#[test]
+fn on_the_ground_it_disarms() {
+    let mut flight = Flight::new();
+    flight.until(Mode::Follow, 30.0);
+    flight.ask(LoadMode::LOAD_MODE_LAND);
+    for _ in 0..1000 {
+        flight.step();
+    }
+    assert_eq!(flight.mode(), Mode::Land);
+    // From here on the ground carries it.
+    let landed = State { velocity: Vector3::zeros(), rod_rate: Vector3::zeros(), ..flight.body.state().cast() };
+    let down = (0..5000).map(|_| {
+        flight.sequence += 1;
+        flight.step_seeing(Some(&frame_of(&landed, flight.sequence)))
+    });
+    let last = down.skip_while(|answer| answer.command.mode != LoadMode::LOAD_MODE_OFF).last().expect("it lands");
+    assert_eq!(last.outputs, [0.0; 4]);
+    assert!(!flight.rig.autopilot.is_armed());
+}
+
+#[test]
+fn modes_that_cannot_be_asked_for_are_denied_in_words() {
+    let mut rig = Rig::new(Autopilot::new(Boot::default()));
+    for mode in [LoadMode::LOAD_MODE_OFF, LoadMode::LOAD_MODE_ENGAGE, LoadMode::LOAD_MODE_FAULT] {
+        let (result, said) = rig.ask(mode);
+        assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8, "{mode:?}");
+        assert_eq!(said, ["modes to ask for: idle, follow, hold, land"]);
+    }
+    // Without the flag it is no mode of this dialect.
+    let (result, _) = rig.command(MavCmd::MAV_CMD_DO_SET_MODE, 0.0, LoadMode::LOAD_MODE_HOLD as u32 as f32);
+    assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8);
+}
+
+#[test]
+fn beyond_the_envelope_it_holds_says_why_and_goes_back() {
+    let mut flight = Flight::new();
+    flight.until(Mode::Follow, 30.0);
+    flight.rig.news();
+    let answer = flight.step_leaning();
+    assert_eq!(answer.command.mode, LoadMode::LOAD_MODE_HOLD);
+    let margins = LoadFault::LOAD_FAULT_ROD_ANGLE
+        | LoadFault::LOAD_FAULT_THRUST_ANGLE
+        | LoadFault::LOAD_FAULT_TENSION
+        | LoadFault::LOAD_FAULT_THRUST;
+    let named = answer.command.faults & margins;
+    assert!(named.bits().is_power_of_two(), "{:?}", answer.command.faults);
+    let said = flight.rig.news();
+    assert!(said.len() == 1 && said[0].starts_with("hold: "), "{said:?}");
+    assert_eq!(flight.rig.autopilot.counters().fallbacks, 1);
+
+    flight.until(Mode::Engage, 30.0);
+    flight.until(Mode::Follow, 30.0);
+    // The reason is known until something else is asked for.
+    assert!(flight.step().command.faults.contains(named));
+    flight.ask(LoadMode::LOAD_MODE_HOLD);
+    assert!(!flight.step().command.faults.intersects(margins));
+}
+
+#[test]
+fn a_policy_that_does_not_resume_waits_to_be_asked_again() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.parameters_mut().unwrap().set(Parameter::Resume, 0.0);
+    let mut flight = Flight::of(autopilot);
+    flight.until(Mode::Follow, 30.0);
+    flight.step_leaning();
+    assert!((0..5000).all(|_| flight.step().command.mode == LoadMode::LOAD_MODE_HOLD));
+    flight.ask(LoadMode::LOAD_MODE_HOLD);
+    flight.step();
+    flight.ask(LoadMode::LOAD_MODE_FOLLOW);
+    flight.until(Mode::Follow, 30.0);
+}
+
+/// States that are missing, stale, or no numbers: coasted over while they are few, then sunk from, and back to the path once they return.
+#[test]
+fn failing_states_lead_to_fault_and_back() {
+    type Failure = fn(&mut Flight) -> Option<LOAD_STATE_DATA>;
+    let failures: [(&str, LoadFault, Failure); 3] = [
+        ("missing", LoadFault::LOAD_FAULT_NO_STATE, |_| None),
+        ("stale", LoadFault::LOAD_FAULT_NO_STATE, |flight| {
+            Some(frame_of(&flight.body.state().cast(), flight.sequence))
+        }),
+        ("no number", LoadFault::LOAD_FAULT_BAD_STATE, |flight| {
+            Some(LOAD_STATE_DATA { velocity: [f32::NAN; 3], ..flight.next_frame() })
+        }),
+    ];
+    for (name, fault, failure) in failures {
+        let mut flight = Flight::new();
+        flight.until(Mode::Follow, 30.0);
+        for (periods, mode) in [(40, Mode::Follow), (60, Mode::Fault)] {
+            for _ in 0..periods {
+                let frame = failure(&mut flight);
+                let answer = flight.step_seeing(frame.as_ref());
+                assert!(answer.command.faults.contains(fault), "{name}");
+            }
+            assert_eq!(flight.mode(), mode, "{name}");
+        }
+        flight.step();
+        assert_eq!(flight.mode(), Mode::Hold, "{name}");
+        flight.until(Mode::Follow, 60.0);
+    }
+}
+
+#[test]
+fn what_the_observers_find_is_told_in_newtons_and_kilograms() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.parameters_mut().unwrap().set(Parameter::TelemetryEvery, 1.0);
+    let mut flight = Flight::of(autopilot);
+    // Not the half kilogram that the law is told.
+    flight.body.set_payload_mass(0.65);
+    flight.ask(LoadMode::LOAD_MODE_HOLD);
+    let last = (0..5000).map(|_| flight.step()).last().unwrap();
+    let telemetry = last.telemetry.expect("every step has it");
+    assert!((telemetry.payload_mass - 0.65).abs() < 0.01, "{telemetry:?}");
+    assert_eq!(telemetry.warning, LoadFault::empty());
+    let warned = (0..200)
+        .map(|_| flight.step_leaning())
+        .find_map(|answer| answer.telemetry.map(|telemetry| telemetry.warning).filter(|warning| !warning.is_empty()));
+    assert!(warned.is_some());
+}

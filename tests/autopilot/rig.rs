@@ -1,0 +1,126 @@
+//! An autopilot with a link's other end: what is sent to it, and what it says.
+
+use autopilot::{Answer, Autopilot, Boot, Next, Parameter, Parameters, Server};
+use controller::{State, Vector3};
+use link::dialect::*;
+use link::{Decoder, Encoder, MavMessage, state_frame};
+
+/// At rest, 1 m outside the default circle.
+pub fn start() -> State<f32> {
+    State::at_rest(Vector3::new(6.0, 0.0, -10.0))
+}
+
+/// The `sequence`-th state, every 2 ms.
+pub fn frame_of(state: &State<f32>, sequence: u32) -> LOAD_STATE_DATA {
+    LOAD_STATE_DATA { time_usec: 2_000 * u64::from(sequence) + 1, sequence, ..state_frame(state) }
+}
+
+pub fn frame(sequence: u32) -> LOAD_STATE_DATA {
+    frame_of(&start(), sequence)
+}
+
+/// Not armed, in a drive.
+pub fn driven(simulate: f32) -> Autopilot {
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.parameters_mut().unwrap().set(Parameter::Simulate, simulate);
+    autopilot
+}
+
+pub fn armed(simulate: f32) -> Autopilot {
+    let mut autopilot = driven(simulate);
+    autopilot.arm().unwrap();
+    autopilot
+}
+
+/// A state, and the step on it.
+pub fn fly(autopilot: &mut Autopilot, sequence: u32) -> Answer {
+    autopilot.receive(&frame(sequence));
+    autopilot.tick()
+}
+
+/// Finite, and what four rotors of `parameters` can give.
+pub fn is_flyable(answer: &Answer, parameters: &Parameters) -> bool {
+    let command = &answer.command;
+    let get = |parameter| parameters.get(parameter);
+    // A float's rounding more.
+    let most = 4.0 * get(Parameter::RotorThrust) * get(Parameter::RotorSpeedMax).powi(2) * 1.000_01;
+    let torques = [Parameter::TorqueMax1, Parameter::TorqueMax2, Parameter::TorqueMax3];
+    let telemetry = answer.telemetry.as_ref().is_none_or(|t| {
+        let scalars =
+            [t.q3, t.q_b3, t.specific_force, t.kappa, t.path_det, t.reach, t.cos_phi_squared, t.payload_mass];
+        let vectors = [&t.integral, &t.payload_force, &t.uav_force, &t.uav_torque];
+        scalars.iter().chain(&t.xi).chain(&t.nu).chain(vectors.into_iter().flatten()).all(|number| number.is_finite())
+    });
+    telemetry
+        && (0.0..=most).contains(&command.thrust)
+        && command.torque.iter().zip(torques).all(|(axis, most)| axis.abs() <= get(most))
+        && answer.outputs.iter().chain(&command.rotor).all(|duty| (0.0..=1.0).contains(duty))
+        && command.zeta.iter().chain([&command.u_zeta]).all(|number| number.is_finite())
+}
+
+/// Both ends, joined by bytes.
+pub struct Rig {
+    pub autopilot: Autopilot,
+    server: Server,
+    decoder: Decoder,
+    encoder: Encoder,
+}
+
+impl Rig {
+    pub fn new(autopilot: Autopilot) -> Self {
+        Self { autopilot, server: Server::new(), decoder: Decoder::new(), encoder: Encoder::new(link::STATION) }
+    }
+
+    pub fn encode(&mut self, message: &MavMessage) -> Vec<u8> {
+        self.encoder.frame(message).bytes().to_vec()
+    }
+
+    /// Bytes as they come; the replies, and the answers of lockstep's steps.
+    pub fn hear(&mut self, bytes: &[u8]) -> (Vec<MavMessage>, Vec<Answer>) {
+        let (mut replies, mut answers) = (Vec::new(), Vec::new());
+        let Self { autopilot, server, decoder, .. } = self;
+        for &byte in bytes {
+            decoder.push(byte, |received| {
+                if let Next::Step(frame) = server.handle(received, 0, autopilot, &mut |message| replies.push(message))
+                {
+                    answers.push(autopilot.lockstep(&frame));
+                }
+            });
+        }
+        (replies, answers)
+    }
+
+    /// A command's result, and what was said about it.
+    pub fn command(&mut self, command: MavCmd, param1: f32, param2: f32) -> (u8, Vec<String>) {
+        let command = command as u16;
+        let request =
+            MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { param1, param2, command, ..COMMAND_LONG_DATA::DEFAULT });
+        let bytes = self.encode(&request);
+        let (replies, _) = self.hear(&bytes);
+        let result = replies.iter().find_map(|reply| match reply {
+            MavMessage::COMMAND_ACK(ack) if ack.command == command => Some(ack.result),
+            _ => None,
+        });
+        (result.expect("every command is acknowledged"), texts(&replies))
+    }
+
+    /// Asks for a mode.
+    pub fn ask(&mut self, mode: LoadMode) -> (u8, Vec<String>) {
+        let custom = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u32 as f32;
+        self.command(MavCmd::MAV_CMD_DO_SET_MODE, custom, mode as u32 as f32)
+    }
+
+    /// What it says unasked.
+    pub fn news(&mut self) -> Vec<String> {
+        let Self { autopilot, server, .. } = self;
+        texts(&std::iter::from_fn(|| server.news(autopilot)).collect::<Vec<_>>())
+    }
+}
+
+fn texts(messages: &[MavMessage]) -> Vec<String> {
+    let texts = messages.iter().filter_map(|message| match message {
+        MavMessage::STATUSTEXT(text) => Some(link::text_of(&*text.text).to_owned()),
+        _ => None,
+    });
+    texts.collect()
+}
