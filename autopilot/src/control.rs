@@ -1,23 +1,23 @@
 //! The control side: when the law is stepped, on which state, and what becomes of its command.
 //!
 //! ```text
-//!            arm                     first good state
-//!   OFF ───────────▶ OFF, armed ───────────────────────▶ the supervisor's modes (`controller::supervisor`)
-//!    ▲                              from hover thrust:      IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT
-//!    │                              taken over; or IDLE,               │
-//!    └── disarm, from anywhere ◀──  if that is asked for ──────────────┘ landed
+//!         arm                  first good state
+//!   OFF ───────▶ OFF, armed ─────────────────────▶ IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT: the supervisor's
+//!    ▲                                                            │
+//!    └───────────── landed; or disarm, from anywhere ─────────────┘
 //! ```
 //!
-//! Rotors are off in OFF. Every control period steps the law on what there is: a state that is missing or refused is one that is no number, and the
-//! supervisor knows what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming; where nothing was asked for it is to follow the path.
+//! The first good state finds a vehicle in flight, which is taken over from hover thrust and does what was asked for, or follows the path where nothing
+//! was; unless that is to idle: then it stands on the ground. From there on every control period steps the supervisor
+//! (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no number, and it knows what to do then. What the pilot asks for
+//! ([`Autopilot::request`]) lasts until disarming. The tracking law has a guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
 
-use controller::model::Model;
 use controller::{Command, Fault, Mode, Request, State, Vector3};
 use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
-use crate::law::{Law, LawAnswer, SetupRefused, Step};
+use crate::law::{Law, SetupRefused, Step};
 use crate::parameters::{Parameter, Parameters};
 use crate::report;
 
@@ -346,7 +346,7 @@ impl Autopilot {
         answer.command = LOAD_COMMAND_DATA {
             thrust: step.command.thrust,
             torque: step.command.torque.into(),
-            zeta: zeta.map(number),
+            zeta: zeta.map(report::number),
             u_zeta,
             rotor,
             ..answer.command
@@ -371,31 +371,7 @@ impl Autopilot {
             return None;
         }
         self.until_telemetry = every - 1;
-        let law = self.law.as_ref()?;
-        let (vehicle, found) = (law.vehicle(), law.disturbance());
-        let lambda = Model::at(vehicle, state).lambda(step.command.thrust);
-        let mut telemetry = LOAD_TELEMETRY_DATA {
-            sequence,
-            integral: law.integral().map(number),
-            payload_force: found.payload_force(vehicle).into(),
-            uav_force: found.uav_force(vehicle).into(),
-            uav_torque: found.torque.into(),
-            payload_mass: number(found.implied_payload_mass(vehicle, &state.rod, lambda)),
-            warning: step.warning.map_or(LoadFault::empty(), report::margin),
-            ..LOAD_TELEMETRY_DATA::DEFAULT
-        };
-        if let Some(LawAnswer { xi, nu, margins, .. }) = &step.answer {
-            telemetry.xi = xi.map(number);
-            telemetry.nu = nu.map(number);
-            telemetry.q3 = margins.q3;
-            telemetry.q_b3 = margins.q_b3;
-            telemetry.specific_force = margins.lambda;
-            telemetry.kappa = margins.kappa;
-            telemetry.path_det = margins.path_det;
-            telemetry.reach = margins.reach;
-            telemetry.cos_phi_squared = margins.cos_phi_squared;
-        }
-        Some(telemetry)
+        Some(report::telemetry(sequence, self.law.as_ref()?, state, step))
     }
 }
 
@@ -415,9 +391,4 @@ fn begin(law: &mut Law, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Re
 /// Whether the law flies.
 fn is_flying(mode: Mode) -> bool {
     matches!(mode, Mode::Engage | Mode::Follow)
-}
-
-/// What is none is sent as zero.
-fn number(x: f32) -> f32 {
-    if x.is_finite() { x } else { 0.0 }
 }

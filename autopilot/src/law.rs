@@ -57,12 +57,20 @@ pub struct LawAnswer {
 }
 
 impl LawAnswer {
-    fn new<X>(solution: &Solution<f32, X>, xi: [&[f32]; 4], zeta: &[f32; 4], actuators: &Actuators) -> Self {
+    /// `xi`'s parts and ζ belong to a `solution` of which `applied` came.
+    fn new<X>(
+        solution: &Solution<f32, X>,
+        xi: [&[f32]; 4],
+        zeta: &[f32; 4],
+        applied: &Command<f32>,
+        actuators: &Actuators,
+    ) -> Self {
         let mut padded = [0.0; 20];
         for (slot, &number) in padded.iter_mut().zip(xi.into_iter().flatten()) {
             *slot = number;
         }
-        let limited = actuators.limit(&solution.command);
+        // After a take-over what is applied differs without being limited; mostly it does not differ, and nothing has to be found out.
+        let limited = solution.command != *applied && actuators.limit(&solution.command);
         Self { u_zeta: solution.u_zeta, zeta: *zeta, xi: padded, nu: solution.nu, margins: solution.margins, limited }
     }
 }
@@ -106,13 +114,13 @@ impl Law {
     pub fn step(&mut self, state: &State<f32>, request: Request, phase: f32) -> Step {
         match self {
             Self::Follow(supervisor) => {
-                let output = supervisor.step(state, request);
+                let controller::Output { command, mode, fault, warning, solution } = supervisor.step(state, request);
                 let follower = supervisor.follower();
-                let answer = output.solution.map(|solution| {
-                    let xi = &solution.xi;
-                    LawAnswer::new(&solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4], follower.zeta(), follower.actuation())
+                let (zeta, actuators) = (follower.zeta(), follower.actuation());
+                let answer = solution.map(|solution| {
+                    let xi: [&[f32]; 4] = [&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4];
+                    LawAnswer::new(&solution, xi, zeta, &command, actuators)
                 });
-                let controller::Output { command, mode, fault, warning, .. } = output;
                 Step { command, mode, fault, warning, answer }
             }
             Self::Track(tracking) => {
@@ -120,7 +128,7 @@ impl Law {
                 let answer = solution.map(|solution| {
                     let [p1, p2, p3] = &solution.xi.position;
                     let xi: [&[f32]; 4] = [p1, p2, p3, &solution.xi.yaw];
-                    LawAnswer::new(&solution, xi, tracking.tracker().zeta(), tracking.actuators())
+                    LawAnswer::new(&solution, xi, tracking.tracker().zeta(), &command, tracking.actuators())
                 });
                 Step { command, mode: tracking.mode(), fault, warning: None, answer }
             }

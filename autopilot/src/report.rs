@@ -1,10 +1,13 @@
-//! Modes and faults as the link has them: numbers for programs, words for the pilot.
+//! Modes, faults and telemetry as the link has them: numbers for programs, words for the pilot.
 
 use core::fmt::Write;
 
+use controller::model::Model;
 use controller::state::Channel;
-use controller::{Fault, Margin, Mode, Request};
-use link::dialect::{LoadFault, LoadMode};
+use controller::{Fault, Margin, Mode, Request, State};
+use link::dialect::{LOAD_TELEMETRY_DATA, LoadFault, LoadMode};
+
+use crate::law::{Law, LawAnswer, Step};
 
 /// As long as a STATUSTEXT can be.
 pub type Text = heapless::String<50>;
@@ -95,4 +98,37 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
     // The longest pair fits.
     let _ = write!(text, "{mode}{separator}{fault}");
     text
+}
+
+/// Where the command of a `step` on `state` came from.
+pub fn telemetry(sequence: u32, law: &Law, state: &State<f32>, step: &Step) -> LOAD_TELEMETRY_DATA {
+    let (vehicle, found) = (law.vehicle(), law.disturbance());
+    let lambda = Model::at(vehicle, state).lambda(step.command.thrust);
+    let mut telemetry = LOAD_TELEMETRY_DATA {
+        sequence,
+        integral: law.integral().map(number),
+        payload_force: found.payload_force(vehicle).into(),
+        uav_force: found.uav_force(vehicle).into(),
+        uav_torque: found.torque.into(),
+        payload_mass: number(found.implied_payload_mass(vehicle, &state.rod, lambda)),
+        warning: step.warning.map_or(LoadFault::empty(), margin),
+        ..LOAD_TELEMETRY_DATA::DEFAULT
+    };
+    if let Some(LawAnswer { xi, nu, margins, .. }) = &step.answer {
+        telemetry.xi = xi.map(number);
+        telemetry.nu = nu.map(number);
+        telemetry.q3 = margins.q3;
+        telemetry.q_b3 = margins.q_b3;
+        telemetry.specific_force = margins.lambda;
+        telemetry.kappa = margins.kappa;
+        telemetry.path_det = margins.path_det;
+        telemetry.reach = margins.reach;
+        telemetry.cos_phi_squared = margins.cos_phi_squared;
+    }
+    telemetry
+}
+
+/// What is none is sent as zero.
+pub fn number(x: f32) -> f32 {
+    if x.is_finite() { x } else { 0.0 }
 }

@@ -91,7 +91,7 @@ def check(dialect, client):
     first = client.receive("PARAM_VALUE")
     names = {name_of(first)} | {name_of(client.receive("PARAM_VALUE")) for _ in range(first.param_count - 1)}
     assert len(names) == first.param_count, "the list is not complete"
-    assert {"LINK_DIALECT", "VEH_M_LOAD", "CTL_PERIOD", "K1_0"} <= names
+    assert {"LINK_DIALECT", "VEH_M_LOAD", "CTL_PERIOD", "K1_0", "OBS_W_LOAD", "ENV_ROD_LIM", "POL_COAST", "ROT_KT"} <= names
 
     def set_parameter(name, value):
         client.send(dialect.MAVLink_param_set_message(1, 1, name.encode(), value, dialect.MAV_PARAM_TYPE_REAL32))
@@ -102,19 +102,24 @@ def check(dialect, client):
     assert set_parameter("SYS_SIM", 1.0) == 1.0
     assert set_parameter("TLM_EVERY", 1.0) == 1.0
 
-    def arm(on):
-        command = dialect.MAV_CMD_COMPONENT_ARM_DISARM
-        client.send(dialect.MAVLink_command_long_message(1, 1, command, 0, float(on), 0, 0, 0, 0, 0, 0))
+    def command_long(command, param1, param2=0.0):
+        client.send(dialect.MAVLink_command_long_message(1, 1, command, 0, param1, param2, 0, 0, 0, 0, 0))
         return client.receive("COMMAND_ACK", lambda message: message.command == command).result
 
-    def state(sequence, action=0, height=-10.0):
+    def arm(on):
+        return command_long(dialect.MAV_CMD_COMPONENT_ARM_DISARM, float(on))
+
+    def ask(mode):
+        return command_long(dialect.MAV_CMD_DO_SET_MODE, dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, mode)
+
+    def state(sequence, action=0, height=-10.0, lean=0.0):
         """At rest on the default circle."""
         return dialect.MAVLink_load_state_message(
             time_usec=2000 * sequence,
             sequence=sequence,
             position=[5.0, 0.0, height],
             velocity=[0.0] * 3,
-            rod=[0.0, 0.0, 1.0],
+            rod=[math.sin(lean), 0.0, math.cos(lean)],
             rod_rate=[0.0] * 3,
             attitude=[1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0],
             body_rate=[0.0] * 3,
@@ -137,8 +142,11 @@ def check(dialect, client):
     hover = answer(2)
     # zeta = 0 at rest: the thrust is the weight of 2.5 kg and 0.75 kg.
     assert math.isclose(hover.thrust, 3.25 * 9.81, rel_tol=1e-4), hover.thrust
-    assert hover.mode == dialect.LOAD_MODE_FLYING
-    assert math.isclose(telemetry.q3, 1.0, rel_tol=1e-6)
+    assert hover.mode == dialect.LOAD_MODE_FOLLOW
+    assert math.isclose(telemetry.q3, 1.0, rel_tol=1e-6) and telemetry.warning == 0
+    # Nothing observed yet: the mass is the one that it was told.
+    assert math.isclose(telemetry.payload_mass, 0.75, rel_tol=1e-3), telemetry.payload_mass
+    assert list(telemetry.payload_force) == [0.0] * 3
     assert all(0.0 < duty < 1.0 for duty in hover.rotor)
 
     # The same question again has the same answer, and the next one goes on.
@@ -147,15 +155,15 @@ def check(dialect, client):
     for sequence in range(3, 203):
         client.send(state(sequence))
         command = answer(sequence)
-        assert command.mode == dialect.LOAD_MODE_FLYING and math.isfinite(command.thrust)
+        assert command.mode == dialect.LOAD_MODE_FOLLOW and math.isfinite(command.thrust)
     # Standing still where it should move, it is told to tilt forward along the path.
     assert max(abs(axis) for axis in command.torque) > 1e-4
 
-    # A state that is none: the last command is held, and it says so.
+    # A state that is none: the last command goes on for a while, and it says so.
     client.send(state(203, height=math.nan))
-    held = answer(203)
-    assert held.mode == dialect.LOAD_MODE_HOLD and held.faults & dialect.LOAD_FAULT_BAD_STATE
-    assert held.thrust == command.thrust
+    coasting = answer(203)
+    assert coasting.mode == dialect.LOAD_MODE_FOLLOW and coasting.faults & dialect.LOAD_FAULT_BAD_STATE
+    assert coasting.thrust == command.thrust
 
     # Noise between frames does no harm.
     client.socket.sendall(bytes(range(256)) * 2)
@@ -164,12 +172,24 @@ def check(dialect, client):
     while True:
         try:
             client.socket.settimeout(0.2)
-            assert answer(204).mode == dialect.LOAD_MODE_FLYING
+            assert answer(204).mode == dialect.LOAD_MODE_FOLLOW
             break
         except TimeoutError:
             assert time.monotonic() < deadline, "the target has not recovered from noise"
             client.send(state(204))
     client.socket.settimeout(TIMEOUT_S)
+
+    # Beyond the envelope it holds, and names the margin; then it does what it is asked for.
+    margins = dialect.LOAD_FAULT_ROD_ANGLE | dialect.LOAD_FAULT_THRUST_ANGLE | dialect.LOAD_FAULT_TENSION | dialect.LOAD_FAULT_THRUST
+    client.send(state(205, lean=1.4))
+    beyond = answer(205)
+    assert beyond.mode == dialect.LOAD_MODE_HOLD and beyond.faults & margins, beyond
+    assert ask(dialect.LOAD_MODE_ENGAGE) == dialect.MAV_RESULT_DENIED
+    for sequence, mode in enumerate((dialect.LOAD_MODE_LAND, dialect.LOAD_MODE_HOLD), start=206):
+        assert ask(mode) == dialect.MAV_RESULT_ACCEPTED
+        client.send(state(sequence))
+        obeying = answer(sequence)
+        assert obeying.mode == mode and not obeying.faults & margins, obeying
 
     client.send(dialect.MAVLink_timesync_message(0, 123456789))
     sync = client.receive("TIMESYNC")
