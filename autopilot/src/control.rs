@@ -249,8 +249,11 @@ impl Autopilot {
         answer
     }
 
-    /// Notes what the step just made cost.
+    /// Notes what the step just made cost. An answer given again has its cost already.
     pub fn note_cost(&mut self, answer: &mut Answer, cycles: u32) {
+        if answer.command.cycles > 0 {
+            return;
+        }
         self.counters.worst_cycles = self.counters.worst_cycles.max(cycles);
         answer.command.cycles = cycles;
         if let Some(last) = self.last.as_mut().filter(|last| last.command.sequence == answer.command.sequence) {

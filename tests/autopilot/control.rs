@@ -180,8 +180,11 @@ fn a_watchdog_reset_is_said_at_once_and_in_every_answer() {
 fn lockstep_answers_the_same_question_the_same_way() {
     let mut autopilot = armed(1.0);
     let first = LOAD_STATE_DATA { action: LoadAction::LOAD_ACTION_START, ..frame(10) };
-    let answer = autopilot.lockstep(&first);
-    assert_eq!(autopilot.lockstep(&first), answer);
+    let mut answer = autopilot.lockstep(&first);
+    autopilot.note_cost(&mut answer, 5_000);
+    let mut again = autopilot.lockstep(&first);
+    autopilot.note_cost(&mut again, 50);
+    assert_eq!(again, answer);
     assert_eq!(autopilot.counters().steps, 1);
     // A number that is not the next one: a reset at one of the ends.
     assert!(autopilot.lockstep(&frame(12)).command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE));
