@@ -5,27 +5,18 @@ use link::MavMessage;
 use link::dialect::*;
 use proptest::prelude::*;
 
-use crate::rig::{Rig, frame_of, is_flyable, start};
+use crate::rig::{Rig, driven, frame_of, is_flyable, start};
 
 /// Something that comes over the link.
 #[derive(Clone, Debug)]
 enum Event {
     /// A state with some of its numbers replaced by any bits.
-    State {
-        action: u8,
-        words: Vec<(usize, u32)>,
-    },
-    /// A parameter, as a share of its range or as any bits.
-    Parameter {
-        index: usize,
-        share: f32,
-        bits: Option<u32>,
-    },
-    Command {
-        command: u16,
-        param1: f32,
-        param2: f32,
-    },
+    State { action: u8, words: Vec<(usize, u32)> },
+    /// A parameter, as a multiple of its default, so that mostly a law can be made of it, or as any bits.
+    Parameter { index: usize, factor: f32, bits: Option<u32> },
+    /// A command with its first two parameters.
+    Command(u16, f32, f32),
+    /// Any bytes.
     Noise(Vec<u8>),
     /// A frame cut short.
     Cut(usize),
@@ -33,15 +24,20 @@ enum Event {
     Ticks(u8),
 }
 
+const ARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
+const MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+
 fn event() -> impl Strategy<Value = Event> {
-    let any_word = (0_usize..29, any::<u32>());
+    let words = prop::collection::vec((0_usize..29, any::<u32>()), 0..3);
+    let bits = prop::option::weighted(0.2, any::<u32>());
     prop_oneof![
-        6 => (0_u8..4, prop::collection::vec(any_word, 0..3)).prop_map(|(action, words)| Event::State { action, words }),
-        3 => (0..Parameters::COUNT, 0.0_f32..=1.0, prop::option::of(any::<u32>()))
-            .prop_map(|(index, share, bits)| Event::Parameter { index, share, bits }),
-        4 => (prop_oneof![Just(400), Just(176), Just(246), any::<u16>()], 0_u8..3, 0_u8..8).prop_map(
-            |(command, param1, param2)| Event::Command { command, param1: param1.into(), param2: param2.into() }
-        ),
+        8 => (0_u8..4, words).prop_map(|(action, words)| Event::State { action, words }),
+        1 => (0..Parameters::COUNT, 0.3_f32..3.0, bits)
+            .prop_map(|(index, factor, bits)| Event::Parameter { index, factor, bits }),
+        1 => (0_u8..2).prop_map(|on| Event::Command(ARM, on.into(), 0.0)),
+        2 => (0_u8..8).prop_map(|mode| Event::Command(MODE, 1.0, mode.into())),
+        1 => (any::<u16>(), any::<u32>(), any::<u32>())
+            .prop_map(|(command, a, b)| Event::Command(command, f32::from_bits(a), f32::from_bits(b))),
         1 => prop::collection::vec(any::<u8>(), 0..80).prop_map(Event::Noise),
         1 => (0_usize..100).prop_map(Event::Cut),
         3 => (1_u8..80).prop_map(Event::Ticks),
@@ -78,8 +74,9 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
     #[test]
-    fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60)) {
-        let mut rig = Rig::new(Autopilot::new(Boot::default()));
+    fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60), simulate in 0_u8..3) {
+        let mut rig = Rig::new(driven(simulate.into()));
+        rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         let mut sequence = 0;
         for event in events {
             let bytes = match event {
@@ -87,13 +84,13 @@ proptest! {
                     sequence += 1;
                     rig.encode(&state(sequence, action, &words))
                 }
-                Event::Parameter { index, share, bits } => {
+                Event::Parameter { index, factor, bits } => {
                     let (entry, _) = rig.autopilot.parameters().at(index).expect("it is one of the table's");
-                    let param_value = bits.map_or(entry.min + share * (entry.max - entry.min), f32::from_bits);
-                    let name = link::name(entry.name);
-                    rig.encode(&MavMessage::PARAM_SET(PARAM_SET_DATA { param_value, param_id: name, ..PARAM_SET_DATA::DEFAULT }))
+                    let param_value = bits.map_or(entry.default * factor, f32::from_bits);
+                    let param_id = link::name(entry.name);
+                    rig.encode(&MavMessage::PARAM_SET(PARAM_SET_DATA { param_value, param_id, ..PARAM_SET_DATA::DEFAULT }))
                 }
-                Event::Command { command, param1, param2 } => rig.encode(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+                Event::Command(command, param1, param2) => rig.encode(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
                     param1,
                     param2,
                     command,

@@ -129,7 +129,8 @@ fn old_and_bad_states_are_refused_counted_and_named() {
     assert_eq!((rig.autopilot.mode(), rig.autopilot.counters().refused), (Mode::Engage, 1));
     assert_eq!(rig.news(), ["joining the path: no state"]);
 
-    let spoil: [(&str, fn(&mut LOAD_STATE_DATA)); 6] = [
+    type Spoil = fn(&mut LOAD_STATE_DATA);
+    let spoilt: [(&str, Spoil); 6] = [
         ("position", |frame| frame.position[1] = f32::NAN),
         ("velocity", |frame| frame.velocity[0] = f32::INFINITY),
         ("rod", |frame| frame.rod[2] = 1.2),
@@ -138,7 +139,7 @@ fn old_and_bad_states_are_refused_counted_and_named() {
         // As a state that is missing: no position.
         ("position", |frame| frame.zeta[3] = f32::NAN),
     ];
-    for (sequence, (name, spoil)) in (6..).zip(spoil) {
+    for (sequence, (name, spoil)) in (6..).zip(spoilt) {
         let mut frame = frame(sequence);
         spoil(&mut frame);
         rig.autopilot.receive(&frame);
