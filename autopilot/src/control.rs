@@ -1,16 +1,17 @@
 //! The control side: when the law is stepped, on which state, and what becomes of its command.
 //!
 //! ```text
-//!         arm                  first good state
-//!   OFF ───────▶ OFF, armed ─────────────────────▶ IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT: the supervisor's
-//!    ▲                                                            │
-//!    └───────────── landed; or disarm, from anywhere ─────────────┘
+//!         arm                first good state
+//!   OFF ───────▶ OFF, armed ──────────────────▶ IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT: the supervisor's
+//!    ▲                                                          │
+//!    └──────────── landed; or disarm, from anywhere ────────────┘
 //! ```
 //!
-//! The first good state finds a vehicle in flight, which is taken over from hover thrust and does what was asked for, or follows the path where nothing
-//! was; unless that is to idle: then it stands on the ground. From there on every control period steps the supervisor
-//! (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no number, and it knows what to do then. What the pilot asks for
-//! ([`Autopilot::request`]) lasts until disarming. The tracking law has a guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
+//! The first good state finds a vehicle in flight, which is taken over from hover thrust and does what was asked for, or follows the path
+//! where nothing was; unless that is to idle: then it stands on the ground. From there on every control period steps the supervisor
+//! (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no number, and it knows
+//! what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a guard of its own
+//! instead, and knows OFF, FOLLOW and FAULT alone.
 
 use controller::{Command, Fault, Mode, Request, State, Vector3};
 use link::dialect::{
