@@ -107,8 +107,8 @@ pub fn telemetry(sequence: u32, law: &Law, state: &State<f32>, step: &Step) -> L
     let mut telemetry = LOAD_TELEMETRY_DATA {
         sequence,
         integral: law.integral().map(number),
-        payload_force: found.payload_force(vehicle).into(),
-        uav_force: found.uav_force(vehicle).into(),
+        payload_force: found.payload_force(vehicle, &state.rod).into(),
+        uav_force: found.uav_force(vehicle, &state.rod).into(),
         uav_torque: found.torque.into(),
         payload_mass: number(found.implied_payload_mass(vehicle, &state.rod, lambda)),
         warning: step.warning.map_or(LoadFault::empty(), margin),

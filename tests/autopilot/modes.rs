@@ -213,6 +213,8 @@ fn what_the_observers_find_is_told_in_newtons_and_kilograms() {
     let last = (0..5000).map(|_| flight.step()).last().unwrap();
     let telemetry = last.telemetry.expect("every step has it");
     assert!((telemetry.payload_mass - 0.65).abs() < 0.01, "{telemetry:?}");
+    // The weight that is more.
+    assert!((telemetry.payload_force[2] - 0.15 * 9.81).abs() < 0.01, "{telemetry:?}");
     assert_eq!(telemetry.warning, LoadFault::empty());
     let warned = (0..200)
         .map(|_| flight.step_leaning())
