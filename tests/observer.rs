@@ -89,11 +89,7 @@ fn fly(setting: &Setting) -> Vec<Sample> {
                 distance: distance_to_circle(state.position.into(), RADIUS, P3),
                 position: state.position,
                 rod: state.rod,
-                estimate: Disturbance {
-                    payload: disturbance.payload.cast(),
-                    rod: disturbance.rod.cast(),
-                    torque: disturbance.torque.cast(),
-                },
+                estimate: disturbance.cast(),
                 implied_mass: f64::from(implied),
             };
             let Command { thrust, torque } = solution.command;

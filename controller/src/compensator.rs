@@ -48,7 +48,7 @@ impl<T: Real> Command<T> {
 }
 
 /// The integrator chain (7) over `dt` with u_ζ held: exact.
-#[inline(never)]
+#[inline]
 pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {
     let half = dt * T::lit(1.0 / 2.0);
     let third = dt * T::lit(1.0 / 3.0);
@@ -74,7 +74,7 @@ pub fn continuing<T: Real>(
     let c = vehicle.coupling;
     let per_c = vehicle.inverse_coupling;
     let (q, w, omega) = (&state.rod, &state.rod_rate, &state.body_rate);
-    let delta = &disturbance.rod;
+    let (delta, delta_1) = (&disturbance.rod, &disturbance.rod_rate);
     let b1: Vector3<T> = state.attitude.column(0).into();
     let b2: Vector3<T> = state.attitude.column(1).into();
     let b3: Vector3<T> = state.attitude.column(2).into();
@@ -88,13 +88,14 @@ pub fn continuing<T: Real>(
     let kappa = applied.thrust * vehicle.kappa_per_thrust;
     let lambda = model.lambda(applied.thrust);
     let rod_2 = &acceleration.rod;
-    let lambda_1 = -(w.dot(&(rod_2 * two + delta)) + kappa * (b3_1.dot(q) + b3.dot(w))) * per_c;
+    let lambda_1 = -(w.dot(&(rod_2 * two + delta)) + delta_1.dot(q) + kappa * (b3_1.dot(q) + b3.dot(w))) * per_c;
     let s_1 = q * lambda_1 + w * lambda;
-    let rod_3 = b3_1 * kappa + s_1 * c;
+    let rod_3 = b3_1 * kappa + s_1 * c + delta_1;
     let lambda_2 = -(rod_2.dot(&(rod_2 * two + delta))
+        + two * w.dot(delta_1)
         + two * w.dot(&rod_3)
         + kappa * (b3_2.dot(q) + two * b3_1.dot(w) + b3.dot(rod_2)))
         * per_c;
     let s_2_z = lambda_2 * q.z + two * lambda_1 * w.z + lambda * rod_2.z;
-    [acceleration.payload.z, s_1.z, s_2_z, T::zero()]
+    [acceleration.payload.z, s_1.z + disturbance.payload_rate.z, s_2_z, T::zero()]
 }

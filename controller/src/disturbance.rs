@@ -8,9 +8,15 @@
 //! v̇ = g e3 + d + λ q,   q̈ = κ b3 + c λ q + δ,   κ (b3·q) = −(|q̇|² + c λ + δ·q),   J ω̇ = J ω × ω + τ + τ_d
 //! ```
 //!
-//! which can stand for wind on either body, wrong masses and wrong thrust alike. Each is found by a linear observer of two states an
-//! axis, v̂˙ = model + d̂ + 2 o (v − v̂), d̂˙ = o² (v − v̂), discretized with both poles at e^(−o h). Along the rod d and δ
-//! act alike, so δ̂ is kept orthogonal to q.
+//! which can stand for wind on either body, wrong masses and wrong thrust alike. None of them stands still as seen from a payload on its way, so each is
+//! found with its rate, by a linear observer of three states an axis
+//!
+//! ```text
+//! v̂˙ = model + d̂ + 3 o e,   d̂˙ = r̂ + 3 o² e,   r̂˙ = o³ e,   e = v − v̂
+//! ```
+//!
+//! discretized with all poles at e^(−o h): a disturbance that grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂
+//! is kept orthogonal to q.
 
 use nalgebra::Vector3;
 
@@ -20,7 +26,7 @@ use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
-/// Unmodelled effects, held constant over a Taylor series.
+/// Unmodelled effects, and how fast they change. Over a Taylor series they grow at these rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance<T> {
     /// d, specific force on the payload in N, m/s².
@@ -29,12 +35,38 @@ pub struct Disturbance<T> {
     pub rod: Vector3<T>,
     /// Torque on the UAV in body axes, N·m.
     pub torque: Vector3<T>,
+    /// ḋ, m/s³.
+    pub payload_rate: Vector3<T>,
+    /// δ̇, 1/s³.
+    pub rod_rate: Vector3<T>,
+    /// Rate of the torque, N·m/s.
+    pub torque_rate: Vector3<T>,
 }
 
 impl<T: Real> Disturbance<T> {
     /// None: the paper's model.
     pub fn none() -> Self {
-        Self { payload: Vector3::zeros(), rod: Vector3::zeros(), torque: Vector3::zeros() }
+        Self {
+            payload: Vector3::zeros(),
+            rod: Vector3::zeros(),
+            torque: Vector3::zeros(),
+            payload_rate: Vector3::zeros(),
+            rod_rate: Vector3::zeros(),
+            torque_rate: Vector3::zeros(),
+        }
+    }
+
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    pub fn cast<U: Real>(&self) -> Disturbance<U> {
+        let vector = |v: &Vector3<T>| v.map(|x| U::lit(x.to_f64()));
+        Disturbance {
+            payload: vector(&self.payload),
+            rod: vector(&self.rod),
+            torque: vector(&self.torque),
+            payload_rate: vector(&self.payload_rate),
+            rod_rate: vector(&self.rod_rate),
+            torque_rate: vector(&self.torque_rate),
+        }
     }
 
     /// Force on the payload in N (frame), N (newton): m_L d + m_Q (q·d) q. Along the `rod` forces on either body are one motion, of all the mass,
@@ -104,49 +136,61 @@ impl<T: Real> ObserverParams<T> {
     }
 }
 
-/// One observer: a velocity's prediction, and the gains that correct it and the disturbance.
+/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and its rate.
 #[derive(Clone, Copy, Debug)]
 struct Channel<T> {
-    /// 1 − p² with both poles at p = e^(−o h).
+    /// 1 − p³ with all poles at p = e^(−o h).
     velocity_gain: T,
-    /// (1 − p)²/h, times the inertia where the disturbance is a torque.
-    disturbance_gain: Vector3<T>,
+    /// (3/2) (1 − p)² (1 + p)/h.
+    disturbance_gain: T,
+    /// (1 − p)³/h².
+    rate_gain: T,
     bound_squared: T,
     /// The velocity predicted up to the left end of the running period's trapezoid.
     predicted: Vector3<T>,
 }
 
 impl<T: Real> Channel<T> {
-    fn new(bandwidth: T, bound: T, period: T, inertia: Vector3<T>) -> Self {
+    fn new(bandwidth: T, bound: T, period: T) -> Self {
+        let one = T::one();
         let pole = (-bandwidth * period).exp();
-        let gap = T::one() - pole;
+        let gap = (one - pole) / period;
+        let square = gap * gap * period;
         Self {
-            velocity_gain: gap * (T::one() + pole),
-            disturbance_gain: inertia * (gap * gap / period),
+            velocity_gain: one - pole * pole * pole,
+            disturbance_gain: square * (one + pole) * T::lit(1.5),
+            rate_gain: square * gap,
             bound_squared: bound * bound,
             predicted: Vector3::zeros(),
         }
     }
 
-    /// Ends the running period with the acceleration at its `right` end, corrects velocity and `disturbance` by what was measured, and begins
-    /// the next with the acceleration at its `left` end. A disturbance that would leave its bound stays where it is.
-    // One copy for the three; and a first sample selects, so that it costs what any does.
-    #[inline(never)]
+    /// Ends the running period with the acceleration at its `right` end, corrects the velocity by what was `measured`, and begins the next with the
+    /// acceleration at its `left` end. Returns the innovation.
+    #[inline]
     fn correct(
         &mut self,
         measured: &Vector3<T>,
         right: &Vector3<T>,
         left: &Vector3<T>,
         half_period: T,
-        is_first: bool,
-        disturbance: &mut Vector3<T>,
-    ) {
-        let predicted = if is_first { *measured } else { self.predicted + right * half_period };
+    ) -> Vector3<T> {
+        let predicted = self.predicted + right * half_period;
         let innovation = measured - predicted;
         self.predicted = predicted + innovation * self.velocity_gain + left * half_period;
-        let found = *disturbance + innovation.component_mul(&self.disturbance_gain);
+        innovation
+    }
+
+    /// Corrects a disturbance and its rate, and moves it on by a `period`. One that would leave its bound stays where it is.
+    #[inline]
+    fn find(&self, innovation: &Vector3<T>, disturbance: &mut Vector3<T>, rate: &mut Vector3<T>, period: T) {
+        let found_rate = *rate + innovation * self.rate_gain;
+        let found = *disturbance + innovation * self.disturbance_gain + found_rate * period;
         if found.dot(&found) <= self.bound_squared {
             *disturbance = found;
+            *rate = found_rate;
+        } else {
+            *rate = Vector3::zeros();
         }
     }
 }
@@ -157,38 +201,39 @@ pub struct Observer<T> {
     payload: Channel<T>,
     rod: Channel<T>,
     body: Channel<T>,
-    half_period: T,
-    /// No sample has come yet.
-    is_fresh: bool,
+    inertia: Vector3<T>,
+    period: T,
     estimate: Disturbance<T>,
 }
 
 impl<T: Real> Observer<T> {
     pub(crate) fn new(vehicle: &Vehicle<T>, params: &ObserverParams<T>, period: T) -> Result<Self, OutOfRange<T>> {
         params.check()?;
-        let ones = Vector3::repeat(T::one());
         Ok(Self {
-            payload: Channel::new(params.payload_bandwidth, params.payload_bound, period, ones),
-            rod: Channel::new(params.rod_bandwidth, params.rod_bound, period, ones),
-            body: Channel::new(params.torque_bandwidth, params.torque_bound, period, vehicle.inertia),
-            half_period: period * T::lit(0.5),
-            is_fresh: true,
+            payload: Channel::new(params.payload_bandwidth, params.payload_bound, period),
+            rod: Channel::new(params.rod_bandwidth, params.rod_bound, period),
+            body: Channel::new(params.torque_bandwidth, params.torque_bound, period),
+            inertia: vehicle.inertia,
+            period,
             estimate: Disturbance::none(),
         })
     }
 
-    /// Forgets every estimate, and starts with the next sample.
-    pub(crate) fn forget(&mut self) {
+    /// Forgets every estimate, and starts from `state`.
+    pub(crate) fn reset(&mut self, state: &State<T>) {
         self.estimate = Disturbance::none();
-        self.restart();
+        self.restart(state);
     }
 
-    /// Starts with the next sample, with the estimates as they are.
-    pub(crate) fn restart(&mut self) {
-        self.is_fresh = true;
+    /// Starts from `state`, with the estimates as they are. The half period's acceleration that this leaves out is gone within the
+    /// observers' time, and below a hundredth of an m/s².
+    pub(crate) fn restart(&mut self, state: &State<T>) {
+        self.payload.predicted = state.velocity;
+        self.rod.predicted = state.rod_rate;
+        self.body.predicted = state.body_rate;
     }
 
-    /// What has been found up to now.
+    /// What has been found up to now, as of the next sample.
     pub fn estimate(&self) -> &Disturbance<T> {
         &self.estimate
     }
@@ -200,11 +245,15 @@ impl<T: Real> Observer<T> {
     /// not know, is made good by `right`.
     #[inline]
     pub(crate) fn correct(&mut self, state: &State<T>, right: &Acceleration<T>, left: &Acceleration<T>) {
-        let (half_period, first) = (self.half_period, core::mem::take(&mut self.is_fresh));
-        let Disturbance { payload, rod, torque } = &mut self.estimate;
-        self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period, first, payload);
-        self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period, first, rod);
-        self.body.correct(&state.body_rate, &right.body, &left.body, half_period, first, torque);
+        let half_period = self.period * T::lit(0.5);
+        let Disturbance { payload, rod, torque, payload_rate, rod_rate, torque_rate } = &mut self.estimate;
+        let missed = self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period);
+        self.payload.find(&missed, payload, payload_rate, self.period);
+        let missed = self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period);
+        self.rod.find(&missed, rod, rod_rate, self.period);
         *rod -= state.rod * state.rod.dot(rod);
+        *rod_rate -= state.rod * state.rod.dot(rod_rate);
+        let missed = self.body.correct(&state.body_rate, &right.body, &left.body, half_period);
+        self.body.find(&missed.component_mul(&self.inertia), torque, torque_rate, self.period);
     }
 }

@@ -293,8 +293,9 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     #[inline(always)]
     pub(crate) fn evaluate(&mut self, ahead: &Ahead<T>) -> Solution<T, Xi<T>> {
         let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
-        let Ahead { state, zeta, disturbance } = ahead;
-        law(self.sampler.vehicle(), &mut path, &self.gains, state, zeta, &self.integral, disturbance)
+        let Ahead { state, zeta } = ahead;
+        let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
+        law(vehicle, &mut path, &self.gains, state, zeta, &self.integral, disturbance)
     }
 
     /// Takes an answer: limits and sends its command, and moves on by a period.

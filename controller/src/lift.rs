@@ -69,6 +69,7 @@ impl<T: Real> Lift<T> {
 #[inline(always)]
 pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], disturbance: &Disturbance<T>) -> Lift<T> {
     let (d, delta) = (&disturbance.payload, &disturbance.rod);
+    let (d_1, delta_1) = (&disturbance.payload_rate, &disturbance.rod_rate);
     let two = T::lit(2.0);
     let three = T::lit(3.0);
     let c = vehicle.coupling;
@@ -91,12 +92,14 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], dist
     let rod_2 = b3 * kappa + s * c + delta;
 
     // Order 1. Here and below the third component of s⁽ⁿ⁾ is ζ itself, free of rounding.
-    let lambda_1 = (zeta2 - lambda * w.z) * per_q3;
+    let s_1_z = zeta2 - d_1.z;
+    let lambda_1 = (s_1_z - lambda * w.z) * per_q3;
     let mut s_1 = q * lambda_1 + w * lambda;
-    s_1.z = zeta2;
+    s_1.z = s_1_z;
     let kappa_dot =
-        -(w.dot(&(rod_2 * two + delta)) + c * lambda_1 + kappa * (b3_dot.dot(q) + b3.dot(w))) * per_b3_rod;
-    let rod_3 = b3 * kappa_dot + b3_dot * kappa + s_1 * c;
+        -(w.dot(&(rod_2 * two + delta)) + delta_1.dot(q) + c * lambda_1 + kappa * (b3_dot.dot(q) + b3.dot(w)))
+            * per_b3_rod;
+    let rod_3 = b3 * kappa_dot + b3_dot * kappa + s_1 * c + delta_1;
 
     // Orders 2 and 3 of the specific force need no more of the rod than q⃛.
     let lambda_2 = (zeta3 - two * lambda_1 * w.z - lambda * rod_2.z) * per_q3;
@@ -107,8 +110,9 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], dist
     s_3.z = zeta4;
 
     let acceleration = Vector3::new(s.x + d.x, s.y + d.y, zeta1);
+    let jerk = Vector3::new(s_1.x + d_1.x, s_1.y + d_1.y, zeta2);
     Lift {
-        derivatives: [state.position, state.velocity, acceleration, s_1, s_2, s_3],
+        derivatives: [state.position, state.velocity, acceleration, jerk, s_2, s_3],
         lambda: [lambda, lambda_1, lambda_2, lambda_3],
         kappa,
         kappa_dot,

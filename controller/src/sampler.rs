@@ -56,12 +56,11 @@ impl<T: Real> Sampling<T> {
 /// Time constant with which thrust and torque pass from what was applied before a take-over to the law's, s.
 const TAKE_OVER: f64 = 0.05;
 
-/// Where a law is to be evaluated: state, ζ and disturbance at the instant its command acts.
+/// Where a law is to be evaluated: state and ζ at the instant its command acts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ahead<T> {
     pub(crate) state: State<T>,
     pub(crate) zeta: [T; 4],
-    pub(crate) disturbance: Disturbance<T>,
 }
 
 /// The memory of a sampled law.
@@ -161,12 +160,12 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         // At a singularity (9) says nothing, and what can't be applied was not.
         let thrust = if thrust.is_finite() { thrust } else { self.vehicle.hover_thrust() };
         let applied = self.actuation.apply(&Command { thrust, torque: Vector3::zeros() });
-        self.reset(zeta, applied);
+        self.reset(state, zeta, applied);
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
     pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.reset([T::zero(); 4], applied);
+        self.reset(state, [T::zero(); 4], applied);
         self.take_over(state);
     }
 
@@ -211,17 +210,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.is_saturated
     }
 
-    /// After periods without a usable state: the observers start from the next one, with their estimates.
-    pub(crate) fn resume(&mut self) {
-        self.observer.restart();
+    /// After periods without a usable state: the observers start from `state`, with their estimates.
+    pub(crate) fn resume(&mut self, state: &State<T>) {
+        self.observer.restart(state);
     }
 
-    fn reset(&mut self, zeta: [T; 4], applied: Command<T>) {
+    fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
         self.zeta = zeta;
         self.u_zeta = T::zero();
         self.bump = Some(Command::zero());
         self.actuators.reset(applied);
-        self.observer.forget();
+        self.observer.reset(state);
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
@@ -236,8 +235,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
             None => acceleration,
         };
         let state = model.ahead(&mean, self.horizon);
-        let disturbance = *self.observer.estimate();
-        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold), disturbance }
+        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold) }
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.

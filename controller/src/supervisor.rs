@@ -265,7 +265,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             Ok(()) => {
                 if self.blind > T::zero() {
                     self.blind = T::zero();
-                    self.follower.sampler().resume();
+                    self.follower.sampler().resume(sampled);
                 }
                 self.with_state(sampled)
             }
@@ -447,7 +447,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         let vehicle = self.follower.vehicle();
         let params = vehicle.params();
         let least = params.uav_mass + params.payload_mass * self.policy.payload_lost;
-        let along = ahead.disturbance.payload.dot(&ahead.state.rod);
+        let along = self.follower.disturbance().payload.dot(&ahead.state.rod);
         let lost = vehicle.total_mass() * lambda > least * (lambda + along);
         self.unloaded = if lost { self.unloaded + self.follower.sampler().period() } else { T::zero() };
         self.unloaded > T::lit(UNLOADED)

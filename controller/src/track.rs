@@ -176,8 +176,9 @@ impl<T: Real> Tracker<T> {
     #[inline]
     pub fn step(&mut self, sampled: &State<T>, reference: &Reference<T>) -> Solution<T, TrackXi<T>> {
         let reference = reference.shift(self.sampler.horizon());
-        let Ahead { state, zeta, disturbance } = self.sampler.ahead(sampled);
-        let mut solution = law(self.sampler.vehicle(), &self.gains, &reference, &state, &zeta, &disturbance);
+        let Ahead { state, zeta } = self.sampler.ahead(sampled);
+        let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
+        let mut solution = law(vehicle, &self.gains, &reference, &state, &zeta, disturbance);
         solution.command =
             self.sampler.hold(solution.command, solution.u_zeta, solution.margins.q3 * solution.margins.q_b3);
         solution

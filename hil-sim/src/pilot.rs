@@ -141,11 +141,10 @@ impl<T: Real> Pilot<T> {
     /// The disturbances found up to the last sample.
     #[must_use]
     pub fn disturbance(&self) -> Disturbance<f64> {
-        let Disturbance { payload, rod, torque } = match self {
-            Self::Follow(follower) => follower.disturbance(),
-            Self::Track(tracker, _) => tracker.disturbance(),
-        };
-        Disturbance { payload: payload.map(T::to_f64), rod: rod.map(T::to_f64), torque: torque.map(T::to_f64) }
+        match self {
+            Self::Follow(follower) => follower.disturbance().cast(),
+            Self::Track(tracker, _) => tracker.disturbance().cast(),
+        }
     }
 
     /// Starts from a stated ζ, with integrals at zero.

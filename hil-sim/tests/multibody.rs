@@ -98,8 +98,12 @@ proptest! {
         let across = apart_rod - state.rod * state.rod.dot(&apart_rod);
         // What of δ lies along the rod changes the tension alone, which d takes: the share of F_Q − F_L m_Q/m_L.
         let along = rod_length * uav_mass / known.total_mass() * state.rod.dot(&apart_rod);
-        let disturbance =
-            Disturbance { payload: payload - state.rod * along, rod: across, torque: loads.torque };
+        let disturbance = Disturbance {
+            payload: payload - state.rod * along,
+            rod: across,
+            torque: loads.torque,
+            ..Disturbance::none()
+        };
         let expected = Model::at(&known, &state).acceleration(&command, &disturbance);
         let got = Multibody::new(vehicle, &state).acceleration(&command, &loads);
         prop_assert!(apart(&got.payload, &expected.payload) <= 1e-12);

@@ -55,17 +55,12 @@ impl Steers for Supervised {
     #[inline]
     fn steer(&mut self, state: &State<f64>, _: f64) -> Steering {
         let output = self.supervisor.step(&state.cast(), Request::Follow);
-        let found = self.supervisor.disturbance();
         Steering {
             command: Command { thrust: output.command.thrust.into(), torque: output.command.torque.map(f64::from) },
             margins: output.solution.map(|solution| pilot::margins_f64(&solution.margins)),
             mode: output.mode,
             fault: output.fault,
-            disturbance: controller::Disturbance {
-                payload: found.payload.map(f64::from),
-                rod: found.rod.map(f64::from),
-                torque: found.torque.map(f64::from),
-            },
+            disturbance: self.supervisor.disturbance().cast(),
         }
     }
 }
