@@ -21,14 +21,7 @@ fn vector(half: f64) -> impl Strategy<Value = Vector3<f64>> {
 
 fn disturbance() -> impl Strategy<Value = Disturbance<f64>> {
     (vector(3.0), vector(2.0), vector(0.2), vector(3.0), vector(2.0)).prop_map(
-        |(payload, rod, torque, payload_rate, rod_rate)| Disturbance {
-            payload,
-            rod,
-            torque,
-            payload_rate,
-            rod_rate,
-            ..Disturbance::none()
-        },
+        |(payload, rod, torque, payload_rate, rod_rate)| Disturbance { payload, rod, torque, payload_rate, rod_rate },
     )
 }
 

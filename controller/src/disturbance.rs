@@ -8,15 +8,16 @@
 //! v̇ = g e3 + d + λ q,   q̈ = κ b3 + c λ q + δ,   κ (b3·q) = −(|q̇|² + c λ + δ·q),   J ω̇ = J ω × ω + τ + τ_d
 //! ```
 //!
-//! which can stand for wind on either body, wrong masses and wrong thrust alike. None of them stands still as seen from a payload on its way, so each is
-//! found with its rate, by a linear observer of three states an axis
+//! which can stand for wind on either body, wrong masses and wrong thrust alike. None of these stands still as seen from a payload on its way, so d and δ
+//! are found with their rates, by linear observers of three states an axis; a torque mostly comes from the vehicle itself, and two do:
 //!
 //! ```text
 //! v̂˙ = model + d̂ + 3 o e,   d̂˙ = r̂ + 3 o² e,   r̂˙ = o³ e,   e = v − v̂
+//! ω̂˙ = model + τ̂/J + 2 o e,   τ̂˙ = J o² e,   e = ω − ω̂
 //! ```
 //!
-//! discretized with all poles at e^(−o h): a disturbance that grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂
-//! is kept orthogonal to q.
+//! discretized with all poles at e^(−o h). A force that grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂ is kept
+//! orthogonal to q.
 
 use nalgebra::Vector3;
 
@@ -26,7 +27,7 @@ use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
 
-/// Unmodelled effects, and how fast they change. Over a Taylor series they grow at these rates.
+/// Unmodelled effects, and how fast the forces change. Over a Taylor series they grow at these rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance<T> {
     /// d, specific force on the payload in N, m/s².
@@ -39,8 +40,6 @@ pub struct Disturbance<T> {
     pub payload_rate: Vector3<T>,
     /// δ̇, 1/s³.
     pub rod_rate: Vector3<T>,
-    /// Rate of the torque, N·m/s.
-    pub torque_rate: Vector3<T>,
 }
 
 impl<T: Real> Disturbance<T> {
@@ -52,7 +51,6 @@ impl<T: Real> Disturbance<T> {
             torque: Vector3::zeros(),
             payload_rate: Vector3::zeros(),
             rod_rate: Vector3::zeros(),
-            torque_rate: Vector3::zeros(),
         }
     }
 
@@ -65,7 +63,6 @@ impl<T: Real> Disturbance<T> {
             torque: vector(&self.torque),
             payload_rate: vector(&self.payload_rate),
             rod_rate: vector(&self.rod_rate),
-            torque_rate: vector(&self.torque_rate),
         }
     }
 
@@ -136,14 +133,11 @@ impl<T: Real> ObserverParams<T> {
     }
 }
 
-/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and its rate.
+/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and, of a force, its rate.
 #[derive(Clone, Copy, Debug)]
 struct Channel<T> {
-    /// 1 − p³ with all poles at p = e^(−o h).
     velocity_gain: T,
-    /// (3/2) (1 − p)² (1 + p)/h.
     disturbance_gain: T,
-    /// (1 − p)³/h².
     rate_gain: T,
     bound_squared: T,
     /// The velocity predicted up to the left end of the running period's trapezoid.
@@ -151,15 +145,27 @@ struct Channel<T> {
 }
 
 impl<T: Real> Channel<T> {
-    fn new(bandwidth: T, bound: T, period: T) -> Self {
-        let one = T::one();
+    /// Of a disturbance that grows: three poles at p = e^(−o h) by the gains 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 − p)³/h².
+    fn growing(bandwidth: T, bound: T, period: T) -> Self {
         let pole = (-bandwidth * period).exp();
-        let gap = (one - pole) / period;
+        let gap = (T::one() - pole) / period;
         let square = gap * gap * period;
         Self {
-            velocity_gain: one - pole * pole * pole,
-            disturbance_gain: square * (one + pole) * T::lit(1.5),
+            velocity_gain: T::one() - pole * pole * pole,
+            disturbance_gain: square * (T::one() + pole) * T::lit(1.5),
             rate_gain: square * gap,
+            ..Self::steady(bandwidth, bound, period)
+        }
+    }
+
+    /// Of one that stays: two, by 1 − p² and (1 − p)²/h.
+    fn steady(bandwidth: T, bound: T, period: T) -> Self {
+        let pole = (-bandwidth * period).exp();
+        let gap = T::one() - pole;
+        Self {
+            velocity_gain: gap * (T::one() + pole),
+            disturbance_gain: gap * gap / period,
+            rate_gain: T::zero(),
             bound_squared: bound * bound,
             predicted: Vector3::zeros(),
         }
@@ -181,17 +187,23 @@ impl<T: Real> Channel<T> {
         innovation
     }
 
-    /// Corrects a disturbance and its rate, and moves it on by a `period`. One that would leave its bound stays where it is.
+    /// Corrects a force and its `rate` by the innovation, and moves it on by a `period`.
     #[inline]
-    fn find(&self, innovation: &Vector3<T>, disturbance: &mut Vector3<T>, rate: &mut Vector3<T>, period: T) {
-        let found_rate = *rate + innovation * self.rate_gain;
-        let found = *disturbance + innovation * self.disturbance_gain + found_rate * period;
-        if found.dot(&found) <= self.bound_squared {
+    fn grow(&self, innovation: &Vector3<T>, disturbance: &mut Vector3<T>, rate: &mut Vector3<T>, period: T) {
+        let found = *rate + innovation * self.rate_gain;
+        let is_taken = self.take(innovation * self.disturbance_gain + found * period, disturbance);
+        *rate = if is_taken { found } else { Vector3::zeros() };
+    }
+
+    /// Corrects a `disturbance`, unless it would leave its bound.
+    #[inline]
+    fn take(&self, correction: Vector3<T>, disturbance: &mut Vector3<T>) -> bool {
+        let found = *disturbance + correction;
+        let is_within = found.dot(&found) <= self.bound_squared;
+        if is_within {
             *disturbance = found;
-            *rate = found_rate;
-        } else {
-            *rate = Vector3::zeros();
         }
+        is_within
     }
 }
 
@@ -210,9 +222,9 @@ impl<T: Real> Observer<T> {
     pub(crate) fn new(vehicle: &Vehicle<T>, params: &ObserverParams<T>, period: T) -> Result<Self, OutOfRange<T>> {
         params.check()?;
         Ok(Self {
-            payload: Channel::new(params.payload_bandwidth, params.payload_bound, period),
-            rod: Channel::new(params.rod_bandwidth, params.rod_bound, period),
-            body: Channel::new(params.torque_bandwidth, params.torque_bound, period),
+            payload: Channel::growing(params.payload_bandwidth, params.payload_bound, period),
+            rod: Channel::growing(params.rod_bandwidth, params.rod_bound, period),
+            body: Channel::steady(params.torque_bandwidth, params.torque_bound, period),
             inertia: vehicle.inertia,
             period,
             estimate: Disturbance::none(),
@@ -246,14 +258,14 @@ impl<T: Real> Observer<T> {
     #[inline]
     pub(crate) fn correct(&mut self, state: &State<T>, right: &Acceleration<T>, left: &Acceleration<T>) {
         let half_period = self.period * T::lit(0.5);
-        let Disturbance { payload, rod, torque, payload_rate, rod_rate, torque_rate } = &mut self.estimate;
+        let Disturbance { payload, rod, torque, payload_rate, rod_rate } = &mut self.estimate;
         let missed = self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period);
-        self.payload.find(&missed, payload, payload_rate, self.period);
+        self.payload.grow(&missed, payload, payload_rate, self.period);
         let missed = self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period);
-        self.rod.find(&missed, rod, rod_rate, self.period);
+        self.rod.grow(&missed, rod, rod_rate, self.period);
         *rod -= state.rod * state.rod.dot(rod);
         *rod_rate -= state.rod * state.rod.dot(rod_rate);
         let missed = self.body.correct(&state.body_rate, &right.body, &left.body, half_period);
-        self.body.find(&missed.component_mul(&self.inertia), torque, torque_rate, self.period);
+        self.body.take(missed.component_mul(&self.inertia) * self.body.disturbance_gain, torque);
     }
 }
