@@ -115,7 +115,6 @@ fn largest(samples: &[Sample], span: &Range<f64>, value: impl Fn(&Sample) -> f64
     worst(samples.iter().filter(|sample| span.contains(&sample.t)).map(value))
 }
 
-/// At the faster of the two: the slower leaves 6.6 mm.
 #[test]
 fn a_steady_newton_on_the_payload_is_found_and_flown() {
     let told = Vehicle::new(VehicleParams::<f64>::default()).expect("Table I");
@@ -123,14 +122,12 @@ fn a_steady_newton_on_the_payload_is_found_and_flown() {
     // In mid-lap, and at rest a metre off the path.
     for onset in [10.0, 0.0] {
         let samples = fly(&Setting { force: (onset, force), ..Setting::new(8.0) });
-        let missed = |sample: &Sample| sample.estimate.payload_force(&told, &sample.rod) - force;
-        let level = |sample: &Sample| missed(sample).x.hypot(missed(sample).y);
-        let found = largest(&samples, &(onset + 3.0..30.0), level);
-        // What acts along the rod is mostly seen vertically, and changes while the payload swings its way back to the path.
-        let found_whole = largest(&samples, &(onset + 4.0..30.0), |sample| length(missed(sample)));
+        let missed = |sample: &Sample| length(sample.estimate.payload_force(&told, &sample.rod) - force);
+        let missed = largest(&samples, &(onset + 3.0..30.0), missed);
         let distance = largest(&samples, &(onset + 15.0..30.0), |sample| sample.distance);
-        assert!(found < 0.02 && found_whole < 0.02, "onset at {onset} s: {found} N, {found_whole} N of 1 N");
-        assert!(distance < 5e-3, "onset at {onset} s: {distance} m");
+        println!("onset at {onset} s: missed by {missed:.4} N, d_C {distance:.1e} m");
+        assert!(missed < 0.02, "onset at {onset} s: {missed} N of 1 N");
+        assert!(distance < 1e-3, "onset at {onset} s: {distance} m");
     }
 }
 

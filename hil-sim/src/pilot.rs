@@ -3,7 +3,7 @@
 use controller::envelope::Margins;
 use controller::{
     ActuatorLimits, Command, Disturbance, Follower, ObserverParams, Real, Sampling, SetupError, State, Tracker,
-    Vehicle, VehicleParams,
+    Vector3, Vehicle, VehicleParams,
 };
 
 use crate::course::{ReferenceSpec, Route};
@@ -42,6 +42,41 @@ pub struct Decision {
     pub nu: [f64; 4],
     /// Distances from the singularities.
     pub margins: Margins<f64>,
+    /// What the observers have found.
+    pub observed: Observed,
+}
+
+/// Disturbances as an operator reads them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observed {
+    /// On the payload in N, beyond the model's, N; along the rod that on both bodies.
+    pub payload_force: [f64; 3],
+    /// On the UAV in N, across the rod, N.
+    pub uav_force: [f64; 3],
+    /// On the UAV in body axes, N·m.
+    pub torque: [f64; 3],
+    /// The payload's mass that would explain the force along the rod in still air, kg.
+    pub payload_mass: f64,
+}
+
+impl Observed {
+    /// Not known.
+    pub const NOTHING: Self = Self {
+        payload_force: [f64::NAN; 3],
+        uav_force: [f64::NAN; 3],
+        torque: [f64::NAN; 3],
+        payload_mass: f64::NAN,
+    };
+
+    fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
+        let numbers = |v: Vector3<T>| v.map(T::to_f64).into();
+        Self {
+            payload_force: numbers(found.payload_force(vehicle, rod)),
+            uav_force: numbers(found.uav_force(vehicle, rod)),
+            torque: numbers(found.torque),
+            payload_mass: found.implied_payload_mass(vehicle, rod, lambda).to_f64(),
+        }
+    }
 }
 
 /// The vehicle in another scalar.
@@ -170,17 +205,17 @@ impl<T: Real> Pilot<T> {
                 *slot = value.to_f64();
             }
         };
-        let (command, nu, margins) = match self {
+        let (command, nu, margins, found, vehicle) = match self {
             Self::Follow(follower) => {
                 let solution = follower.step(&state);
                 fill(&[&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
-                (solution.command, solution.nu, solution.margins)
+                (solution.command, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
             }
             Self::Track(tracker, reference) => {
                 let solution = tracker.step(&state, &reference.at(t_s));
                 let [p1, p2, p3] = &solution.xi.position;
                 fill(&[p1, p2, p3, &solution.xi.yaw]);
-                (solution.command, solution.nu, solution.margins)
+                (solution.command, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
             }
         };
         Decision {
@@ -190,6 +225,7 @@ impl<T: Real> Pilot<T> {
             xi,
             nu: nu.map(T::to_f64),
             margins: margins_f64(&margins),
+            observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
         }
     }
 }

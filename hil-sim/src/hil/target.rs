@@ -10,7 +10,7 @@ use link::dialect::*;
 
 use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
-use crate::pilot::{Answers, Decision};
+use crate::pilot::{Answers, Decision, Observed};
 use crate::plant::Input;
 use crate::scenario::{ControllerSpec, Law, Scenario};
 
@@ -312,6 +312,7 @@ impl Target {
             xi: [f64::NAN; 20],
             nu: [f64::NAN; 4],
             margins: no_margins(),
+            observed: Observed::NOTHING,
         };
         if let Some(data) = telemetry {
             self.integral = data.integral.map(f64::from);
@@ -325,6 +326,12 @@ impl Target {
                 path_det: data.path_det.into(),
                 reach: data.reach.into(),
                 cos_phi_squared: data.cos_phi_squared.into(),
+            };
+            decision.observed = Observed {
+                payload_force: data.payload_force.map(f64::from),
+                uav_force: data.uav_force.map(f64::from),
+                torque: data.uav_torque.map(f64::from),
+                payload_mass: data.payload_mass.into(),
             };
         }
         Ok(decision)

@@ -3,7 +3,7 @@
 use crate::batch::Outcome;
 use crate::plant::index;
 
-const COLUMNS: [&str; 38] = [
+const COLUMNS: [&str; 50] = [
     "t_s",
     "p1",
     "p2",
@@ -42,6 +42,18 @@ const COLUMNS: [&str; 38] = [
     "lambda",
     "kappa",
     "path_det",
+    "reach",
+    "cos_phi_squared",
+    "payload_force1",
+    "payload_force2",
+    "payload_force3",
+    "uav_force1",
+    "uav_force2",
+    "uav_force3",
+    "disturbing_torque1",
+    "disturbing_torque2",
+    "disturbing_torque3",
+    "implied_payload_mass",
 ];
 
 /// The log as CSV.
@@ -63,6 +75,10 @@ pub fn csv(outcome: &Outcome) -> Result<Vec<u8>, csv::Error> {
             line.extend(decision.integral);
             line.extend(decision.nu);
             line.extend([margins.q3, margins.q_b3, margins.lambda, margins.kappa, margins.path_det]);
+            line.extend([margins.reach, margins.cos_phi_squared]);
+            let observed = &decision.observed;
+            line.extend([observed.payload_force, observed.uav_force, observed.torque].concat());
+            line.push(observed.payload_mass);
         }
         let filled = line.iter().map(f64::to_string);
         let empty = std::iter::repeat_n(String::new(), COLUMNS.len() - line.len());
