@@ -284,10 +284,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
                 self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
             }
             Mode::Engage | Mode::Follow => self.following(sampled),
-            Mode::Hold | Mode::Land => {
-                let ahead = self.follower.sampler().ahead(sampled);
-                self.holding(sampled, &ahead.state)
-            }
+            Mode::Hold | Mode::Land => self.hold_ahead(sampled),
         }
     }
 
@@ -361,7 +358,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     }
 
     /// The law's command, if its answer can be flown; hold's, if not.
-    #[inline(always)]
+    #[inline(never)]
     fn following(&mut self, sampled: &State<T>) -> Output<T> {
         let ahead = self.follower.sampler().ahead(sampled);
         let solution = self.follower.evaluate(&ahead);
@@ -382,6 +379,14 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         let command = self.follower.accept(&solution);
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
         Output { command, mode: self.mode, fault: self.fault, warning, solution: Some(solution) }
+    }
+
+    /// Hold's command, looking ahead.
+    // Apart, and so is the law: neither needs the other's stack.
+    #[cold]
+    fn hold_ahead(&mut self, sampled: &State<T>) -> Output<T> {
+        let ahead = self.follower.sampler().ahead(sampled);
+        self.holding(sampled, &ahead.state)
     }
 
     /// Hold's command for when it acts, at `state`, from what is `sampled` now.
