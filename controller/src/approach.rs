@@ -121,7 +121,8 @@ impl<T: Real> Pace<T> {
     }
 }
 
-/// x^(1/3), or 1 for less: Newton's steps from 1 + √x come down to it from above, until rounding ends the descent.
+/// x^(1/3), or 1 for less: Newton's steps from 1 + √x come down to it from above, by a third each at first, until rounding ends the descent: fewer than
+/// 50 of them for any f32, once an approach.
 fn cube_root<T: Real>(x: T) -> T {
     let third = T::lit(1.0 / 3.0);
     let x = x.max(T::one());

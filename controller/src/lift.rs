@@ -8,8 +8,9 @@
 //! q̈ = κ b3 + c s + δ,         κ (b3·q) = −(|q̇|² + c λ + δ·q)
 //! ```
 //!
-//! Each time derivative of these lines is linear in the highest derivative it brings: λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1},
-//! κ⁽ⁿ⁾ from the last equation, q⁽ⁿ⁺²⁾ from the pendulum line, and p⁽ⁿ⁺²⁾ = s⁽ⁿ⁾.
+//! Each time derivative of these lines is linear in the highest derivative it brings: λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1} − d3⁽ⁿ⁾,
+//! κ⁽ⁿ⁾ from the last equation, q⁽ⁿ⁺²⁾ from the pendulum line, and p⁽ⁿ⁺²⁾ = s⁽ⁿ⁾ + d⁽ⁿ⁾. Of d and δ the first derivatives are known,
+//! and the others zero.
 //! It divides by q3 and by b3·q, the paper's singularities α, β = ±π/2 and b3 ⊥ q.
 
 use nalgebra::Vector3;
@@ -91,7 +92,7 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], dist
     let kappa = -(w.dot(w) + c * lambda + delta.dot(q)) * per_b3_rod;
     let rod_2 = b3 * kappa + s * c + delta;
 
-    // Order 1. Here and below the third component of s⁽ⁿ⁾ is ζ itself, free of rounding.
+    // Order 1. Here and below the third component of s⁽ⁿ⁾ is what ζ says, free of rounding.
     let s_1_z = zeta2 - d_1.z;
     let lambda_1 = (s_1_z - lambda * w.z) * per_q3;
     let mut s_1 = q * lambda_1 + w * lambda;

@@ -66,8 +66,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// `(sin x, cos x)`, x in rad. In `f32`: absolute error ≤ 1.2e-7 for |x| ≤ 8192, NaN beyond.
     fn sin_cos(self) -> (Self, Self);
-    /// Four-quadrant angle of the point (`x`, `self`), rad, in [−π, π]; 0 at the origin. In `f32`: absolute error ≤ 3e-7, of finite
-    /// numbers whose sum is one.
+    /// Four-quadrant angle of the point (`x`, `self`), rad, in [−π, π]; 0 at the origin. In `f32`: absolute error ≤ 3e-7 for finite
+    /// numbers with a finite sum.
     fn atan2(self, x: Self) -> Self;
     /// `eˣ`.
     fn exp(self) -> Self;

@@ -3,15 +3,12 @@
 use clap::Args;
 use hil_sim::campaign::{self, Campaign, Identity, Row, Shard};
 use hil_sim::world::Seed;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use super::{Common, Ended};
+use super::{Common, Ended, many, many::Many};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = "Examples:
@@ -37,12 +34,8 @@ pub struct CampaignArguments {
     /// Flights; as the file says if left out.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     runs: Option<u64>,
-    /// Seed of all random numbers.
-    #[arg(long, default_value_t = 1, value_name = "S")]
-    seed: u64,
-    /// Threads; all cores if left out.
-    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    many: Many,
     /// Fly this one flight again, with its full log.
     #[arg(long, value_name = "ROW", conflicts_with = "shard")]
     replay: Option<u64>,
@@ -71,28 +64,26 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     if let Some(run) = arguments.replay {
-        return replay(common, &campaign, Seed { batch: arguments.seed, run });
+        return replay(common, &campaign, Seed { batch: arguments.many.seed, run });
     }
 
-    let stop = Arc::new(AtomicBool::new(false));
-    let handler = Arc::clone(&stop);
-    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+    let stop = many::interrupt()?;
     let identity = Identity {
         campaign: text,
         runs: arguments.runs.unwrap_or(campaign.runs),
-        seed: arguments.seed,
+        seed: arguments.many.seed,
         shard: arguments.shard.unwrap_or(Shard::WHOLE),
         version: env!("CARGO_PKG_VERSION").to_owned(),
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(arguments.jobs.map_or(0, usize::from)).build()?;
+    let pool = arguments.many.pool()?;
     let planned = identity.shard.runs(identity.runs).count();
-    let bar = bar(common.quiet, planned as u64);
+    let bar = many::bar(common.quiet, planned as u64, "{wide_bar} {pos} of {len} flights, {eta} left");
     let started = Instant::now();
     let rows = pool.install(|| campaign::run(&campaign, &identity, common.folder(), &stop, &|done| bar.inc(done)))?;
     bar.finish_and_clear();
     if rows.len() < planned {
         eprintln!("hil-sim: interrupted: {} of {planned} flights are kept; the same command goes on", rows.len());
-        return Ok(ExitCode::from(130));
+        return Ok(many::interrupted());
     }
     report(common, &campaign, identity.seed, &rows)?;
     if !common.quiet {
@@ -139,15 +130,4 @@ fn replay(common: &Common, campaign: &Campaign, seed: Seed) -> Ended {
         writeln!(out, "{row:#?}\nLog: {}", path.display())?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// A bar on standard error; none where that is no terminal.
-fn bar(quiet: bool, flights: u64) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(flights);
-    let style = ProgressStyle::with_template("{wide_bar} {pos} of {len} flights, {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

@@ -5,15 +5,12 @@ use hil_sim::reference::Reference;
 use hil_sim::report;
 use hil_sim::run::{Arithmetic, End};
 use hil_sim::scenario::{self, Scenario};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{Common, Ended};
+use super::{Common, Ended, many};
 
 /// The built-in scenarios: the paper's figures, and curves of every kind.
 pub fn figures() -> Result<Vec<Scenario>, Box<dyn Error>> {
@@ -49,15 +46,12 @@ pub fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
 
 /// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
 pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) -> Ended {
-    let stop = Arc::new(AtomicBool::new(false));
-    let handler = Arc::clone(&stop);
-    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+    let stop = many::interrupt()?;
 
     super::check::warn(&scenarios);
     let planned = scenarios.len();
-    let bar = progress_bar(common.quiet, batch::work_s(&scenarios));
-    // The bar counts milliseconds of flight.
-    let outcomes = batch::fly_all(scenarios, arithmetic, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
+    let bar = many::progress_bar(common.quiet, batch::work_s(&scenarios));
+    let outcomes = batch::fly_all(scenarios, arithmetic, &stop, &many::progress(&bar))?;
     bar.finish_and_clear();
 
     let reference = Reference::builtin();
@@ -85,18 +79,7 @@ pub fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
     }
     if outcomes.len() < planned {
         eprintln!("hil-sim: interrupted: {} of {planned} flights are complete and reported", outcomes.len());
-        code = ExitCode::from(130);
+        code = many::interrupted();
     }
     code
-}
-
-/// A bar on standard error; none where that is no terminal.
-pub fn progress_bar(quiet: bool, work_s: f64) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new((1e3 * work_s).round() as u64);
-    let style = ProgressStyle::with_template("{wide_bar} {percent}% of the flights, {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
 }

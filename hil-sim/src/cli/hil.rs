@@ -5,10 +5,8 @@ use hil_sim::reference::Reference;
 use hil_sim::report;
 use std::fs;
 use std::io::{self, Write};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{Common, Ended, fly};
+use super::{Common, Ended, fly, many};
 
 pub const EXAMPLES: &str = "Examples:
   hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
@@ -23,13 +21,11 @@ pub const TARGET_EXAMPLES: &str = "Examples:
 /// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
 pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
     let scenarios = if arguments.files.is_empty() { fly::figures()? } else { fly::load(&arguments.files)? };
-    let stop = Arc::new(AtomicBool::new(false));
-    let handler = Arc::clone(&stop);
-    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+    let stop = many::interrupt()?;
 
     let planned = scenarios.len();
-    let bar = fly::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
-    let flown = hil::fly_all(arguments, scenarios, &stop, &|flown_s| bar.inc((1e3 * flown_s).round() as u64))?;
+    let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
+    let flown = hil::fly_all(arguments, scenarios, &stop, &many::progress(&bar))?;
     bar.finish_and_clear();
     let Flown { outcomes, links, failure } = flown;
 

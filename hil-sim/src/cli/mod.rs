@@ -7,6 +7,7 @@ mod eval;
 mod fit;
 mod fly;
 mod hil;
+mod many;
 mod policies;
 mod tune;
 
@@ -83,7 +84,7 @@ enum Command {
     /// Fly every figure of the paper and compare with the reference numbers.
     #[command(after_help = "Examples:
   hil-sim figures                    report in out/
-  hil-sim figures --quiet --out /tmp/figures")]
+  hil-sim figures --quiet --out results")]
     Figures,
     /// Evaluate the law for JSON objects, one a line, on standard input.
     ///

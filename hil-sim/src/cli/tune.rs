@@ -7,15 +7,13 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{Common, Ended, fly};
+use super::{Common, Ended, many, many::Many};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = "Examples:
   hil-sim tune                       for the paper's vehicle with slow rotors and noisy sensors in gusts
-  hil-sim tune my-flight.toml --runs 50 --seed 7 --jobs 2 --out /tmp/tune
+  hil-sim tune my-flight.toml --runs 50 --seed 7 --jobs 2 --out results
   hil-sim tune my-flight.toml --scales 0.8,1,1.2,1.4,1.6 --bandwidths 4,8,16";
 
 /// What to tune for.
@@ -27,12 +25,8 @@ pub struct TuneArguments {
     /// Flights for each setting.
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     runs: u32,
-    /// Seed of all random numbers.
-    #[arg(long, default_value_t = 1, value_name = "S")]
-    seed: u64,
-    /// Threads; all cores if left out.
-    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=4096))]
-    jobs: Option<u16>,
+    #[command(flatten)]
+    many: Many,
     /// s of the poles s·{-1, ..., -6} to try.
     #[arg(long, value_name = "S,S,...", value_delimiter = ',', default_values_t = tune::SCALES)]
     scales: Vec<f64>,
@@ -43,7 +37,7 @@ pub struct TuneArguments {
 
 /// Flies, prints the table and the trade, writes the files.
 pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
-    let TuneArguments { file, runs, seed, jobs, scales, bandwidths } = arguments;
+    let TuneArguments { file, runs, many, scales, bandwidths } = arguments;
     if let Some(wrong) = scales.iter().find(|scale| !(0.01..=100.0).contains(*scale)) {
         return Err(format!("--scales {wrong}: outside 0.01 to 100").into());
     }
@@ -63,20 +57,16 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
     // Refuses with the line what is wrong before anything is put in its place.
     let duration_s = Scenario::parse(&name, &text)?.duration_s;
     let table: toml::Table = toml::from_str(&text)?;
-    let stop = Arc::new(AtomicBool::new(false));
-    let handler = Arc::clone(&stop);
-    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed))?;
+    let stop = many::interrupt()?;
 
     let runs = *runs as usize;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.map_or(0, usize::from)).build()?;
-    let bar = fly::progress_bar(common.quiet, (scales.len() * bandwidths.len() * runs) as f64 * duration_s);
-    // The bar counts milliseconds of flight.
-    let progress = |flown_s: f64| bar.inc((1e3 * flown_s).round() as u64);
-    let tuned = pool.install(|| tune::tune(&table, (scales, bandwidths), (runs, *seed), &stop, &progress));
+    let pool = many.pool()?;
+    let bar = many::progress_bar(common.quiet, (scales.len() * bandwidths.len() * runs) as f64 * duration_s);
+    let tuned =
+        pool.install(|| tune::tune(&table, (scales, bandwidths), (runs, many.seed), &stop, &many::progress(&bar)));
     bar.finish_and_clear();
     let Some(tuning) = tuned.map_err(|error| format!("{name}: {error}"))? else {
-        eprintln!("hil-sim: interrupted: nothing is reported");
-        return Ok(ExitCode::from(130));
+        return Ok(many::nothing_reported());
     };
     let folder = common.folder();
     fs::create_dir_all(folder)?;
