@@ -36,9 +36,6 @@ mod app {
     /// The timer's period in lockstep, s: half of the watchdog's.
     const LOCKSTEP_PERIOD_S: f32 = 0.25;
 
-    /// Whether state frames drive the control step.
-    static LOCKSTEP: AtomicBool = AtomicBool::new(false);
-
     /// Set by each control interrupt, cleared by whoever feeds the watchdog.
     static CONTROL_LIVES: AtomicBool = AtomicBool::new(false);
 
@@ -111,10 +108,7 @@ mod app {
             if CONTROL_LIVES.swap(false, Ordering::Relaxed) {
                 cx.local.watchdog.feed();
             }
-            // On the bench the next frame is due at once, and an emulator takes longer to wake than to answer.
-            if !LOCKSTEP.load(Ordering::Relaxed) {
-                cortex_m::asm::wfi();
-            }
+            cortex_m::asm::wfi();
         }
     }
 
@@ -151,7 +145,6 @@ mod app {
                     board::pend_link();
                 }
             }
-            LOCKSTEP.store(lockstep, Ordering::Relaxed);
             // In lockstep it only shows the watchdog that control lives.
             let wanted_s = if lockstep { LOCKSTEP_PERIOD_S } else { autopilot.period_s() };
             if *period_s != wanted_s {

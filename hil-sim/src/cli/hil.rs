@@ -11,7 +11,7 @@ use super::{Common, Ended, fly, many};
 pub const EXAMPLES: &str = "Examples:
   hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
   hil-sim hil fig3a --port /dev/ttyUSB0 --real-time    by the board's own clock
-  hil-sim hil fig3a --connect tcp:192.168.1.7:5760
+  hil-sim hil fig3a --connect udp:192.168.1.7:14550    over a wireless bridge
   hil-sim hil fig3a --emulate firmware/target/thumbv7em-none-eabihf/release/firmware";
 
 pub const TARGET_EXAMPLES: &str = "Examples:

@@ -20,7 +20,7 @@ pub struct Place {
     /// Serial port of the target.
     #[arg(long)]
     pub port: Option<String>,
-    /// Socket of the target: unix:PATH or tcp:HOST:PORT.
+    /// Socket of the target: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
     /// Image to start in QEMU.

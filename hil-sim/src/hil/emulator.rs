@@ -1,19 +1,23 @@
 //! QEMU with a target's image, its first serial port on a socket of our own.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
 
-use super::{Endpoint, HilError};
+use super::datagrams::Datagrams;
+use super::{Endpoint, HilError, Wire};
 
 const PROGRAM: &str = "qemu-system-arm";
 
 /// A running emulator; it ends with this value.
 pub struct Emulator {
     child: Child,
-    socket: PathBuf,
+    socket: UdpSocket,
+    endpoint: Endpoint,
     stderr: Arc<Mutex<String>>,
     /// log2 of the virtual nanoseconds an instruction takes, where instructions are counted.
     shift: Option<u32>,
@@ -25,22 +29,22 @@ impl Emulator {
     /// instructions and repeatable.
     ///
     /// # Errors
-    /// [`HilError::Image`] or [`HilError::NoEmulator`].
+    /// [`HilError::Image`], [`HilError::NoEmulator`], or [`HilError::Connect`] if there is no free port.
     pub fn start(machine: &str, image: &Path, count: bool) -> Result<Self, HilError> {
-        static STARTED: AtomicU32 = AtomicU32::new(0);
         std::fs::File::open(image)
             .map_err(|source| HilError::Image { image: image.display().to_string(), source })?;
-        let number = STARTED.fetch_add(1, Ordering::Relaxed);
-        let socket = std::env::temp_dir().join(format!("hil-{}-{number}.sock", std::process::id()));
-        let _ = std::fs::remove_file(&socket);
-        let mut command = Command::new(PROGRAM);
+        let (socket, port) = free_port().map_err(|source| {
+            let endpoint = Endpoint::Udp(Ipv4Addr::LOCALHOST.to_string());
+            HilError::Connect { endpoint, source }
+        })?;
+        let mut command = program();
         command
             .args(["-machine", machine, "-display", "none", "-monitor", "none", "-kernel"])
             .arg(image)
-            // It waits for us, so that its first words are not lost.
+            // Datagrams, because QEMU then reads a whole frame at once, and from other lines a byte for each turn of its main loop;
+            // multiplexed for the sake of that buffer: the port takes the next byte when it has been read, and not a turn later.
             .arg("-chardev")
-            // Multiplexed for the sake of its buffer: a port takes the next byte when it has been read, and not a wake-up later.
-            .arg(format!("socket,id=hil,path={},server=on,wait=on,mux=on", socket.display()))
+            .arg(format!("udp,id=hil,host=127.0.0.1,port={port},localaddr=127.0.0.1,localport=0,mux=on"))
             // No byte has this value, so none is taken for the multiplexer's escape.
             .args(["-echr", "0x100", "-serial", "chardev:hil"]);
         let shift = count.then_some(Self::SHIFT);
@@ -66,16 +70,38 @@ impl Emulator {
                 }
             });
         }
-        Ok(Self { child, socket, stderr, shift, machine: machine.to_owned() })
+        let endpoint = Endpoint::Udp(format!("127.0.0.1:{port}"));
+        Ok(Self { child, socket, endpoint, stderr, shift, machine: machine.to_owned() })
     }
 
     /// 2⁶ ns an instruction: more than a tick of either machine's cycle counter, so that none is lost to rounding.
     const SHIFT: u32 = 6;
 
-    /// Where its serial port is.
+    /// Where its serial port is heard.
     #[must_use]
     pub fn endpoint(&self) -> Endpoint {
-        Endpoint::Unix(self.socket.clone())
+        self.endpoint.clone()
+    }
+
+    /// The line to its serial port, once the target has spoken: where from, only its first word tells.
+    ///
+    /// # Errors
+    /// [`HilError::EmulatorDied`], or [`HilError::Silent`] after `patience`.
+    pub fn open(&mut self, patience: Duration) -> Result<Box<dyn Wire>, HilError> {
+        let begun = Instant::now();
+        let failed = |endpoint: &Endpoint, source| HilError::Connect { endpoint: endpoint.clone(), source };
+        while self.socket.peer_addr().is_err() {
+            self.check()?;
+            if begun.elapsed() >= patience {
+                return Err(HilError::Silent { endpoint: self.endpoint.clone(), waited: begun.elapsed() });
+            }
+            if let Ok((_, peer)) = self.socket.peek_from(&mut [0]) {
+                self.socket.connect(peer).map_err(|source| failed(&self.endpoint, source))?;
+            }
+        }
+        self.check()?;
+        let line = self.socket.try_clone().and_then(Datagrams::over);
+        Ok(Box::new(line.map_err(|source| failed(&self.endpoint, source))?))
     }
 
     /// Process number.
@@ -110,9 +136,7 @@ impl Emulator {
 
     fn died(&self, status: String) -> HilError {
         let text = self.stderr.lock().map(|text| text.clone()).unwrap_or_default();
-        // It says on which socket it waits: no fault.
-        let stderr =
-            text.lines().filter(|line| !line.contains("waiting for connection")).collect::<Vec<_>>().join("; ");
+        let stderr = text.lines().collect::<Vec<_>>().join("; ");
         HilError::EmulatorDied { status, stderr }
     }
 }
@@ -121,6 +145,43 @@ impl Drop for Emulator {
     fn drop(&mut self) {
         let _ = self.child.kill();
         let _ = self.child.wait();
-        let _ = std::fs::remove_file(&self.socket);
     }
+}
+
+/// A socket of ours, whose reads end soon, and its port.
+fn free_port() -> std::io::Result<(UdpSocket, u16)> {
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0))?;
+    socket.set_read_timeout(Some(Duration::from_millis(20)))?;
+    let port = socket.local_addr()?.port();
+    Ok((socket, port))
+}
+
+/// QEMU, its threads kept on one core and from interrupting each other, where the system has the tools: they wake each other for each
+/// byte, and on two cores take longer to wake than to work.
+fn program() -> Command {
+    static STARTED: AtomicUsize = AtomicUsize::new(0);
+    let cores = cores();
+    let number = std::process::id() as usize + STARTED.fetch_add(1, Ordering::Relaxed);
+    let Some(core) = number.checked_rem(cores.len()).and_then(|turn| cores.get(turn)) else {
+        return Command::new(PROGRAM);
+    };
+    let on_one_core = || {
+        let mut command = Command::new("taskset");
+        command.args(["-c", &core.to_string(), "chrt", "-b", "0", PROGRAM]);
+        command
+    };
+    // It fails where a tool is missing or may not, and where there is no QEMU: that is better said without them.
+    let works = on_one_core().arg("--version").output().is_ok_and(|output| output.status.success());
+    if works { on_one_core() } else { Command::new(PROGRAM) }
+}
+
+/// The cores that this process may run on; none where the system doesn't tell.
+fn cores() -> Vec<u32> {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let list = status.lines().find_map(|line| line.strip_prefix("Cpus_allowed_list:")).unwrap_or_default();
+    let range = |range: &str| {
+        let (first, last) = range.split_once('-').unwrap_or((range, range));
+        Some(first.parse().ok()?..=last.parse().ok()?)
+    };
+    list.trim().split(',').filter_map(range).flatten().collect()
 }

@@ -8,7 +8,7 @@ use super::Endpoint;
 #[derive(Debug, thiserror::Error)]
 pub enum HilError {
     /// The endpoint's description is none.
-    #[error("{0:?} is no endpoint: unix:PATH or tcp:HOST:PORT")]
+    #[error("{0:?} is no endpoint: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT")]
     Endpoint(String),
     /// There is no such serial port, or it is not ours to open.
     #[error("cannot open the serial port {port}: {source}; {}", ports(.available))]

@@ -8,9 +8,6 @@ use link::{Decoder, Encoder, MavMessage};
 
 use super::{Emulator, Endpoint, HilError, Options, Statistics, Wire};
 
-/// A read of fewer bytes is the beginning of a frame, and the next should find more.
-const GATHER: usize = 32;
-
 /// A line that is open, with what has come over it.
 pub struct Line {
     endpoint: Endpoint,
@@ -26,7 +23,7 @@ pub struct Line {
 }
 
 impl Line {
-    /// Opens `endpoint`, waiting for it as long as the patience lasts if it is an emulator's.
+    /// Opens `endpoint`, or the line to the emulator, waiting for its first word as long as the patience lasts.
     pub fn open(endpoint: Endpoint, mut emulator: Option<Emulator>, options: Options) -> Result<Self, HilError> {
         let wire = open(&endpoint, emulator.as_mut(), options.patience)?;
         Ok(Self { emulator, ..Self::over(endpoint, wire, options) })
@@ -128,10 +125,6 @@ impl Line {
             Ok(0) => self.mend(ErrorKind::UnexpectedEof.into()),
             Ok(count) => {
                 self.received_bytes += count as u64;
-                if count < GATHER {
-                    // An emulator sends bytes one by one; waking for each costs more than waiting for some.
-                    std::thread::sleep(Duration::from_micros(20));
-                }
                 let (inbox, statistics) = (&mut self.inbox, &mut self.statistics);
                 for &byte in &bytes[..count] {
                     self.decoder.push(byte, |received| match received {
@@ -166,19 +159,10 @@ impl Line {
     }
 }
 
-/// Opens the line, waiting for its other end to be there.
+/// Opens the line, to the emulator if there is one.
 fn open(endpoint: &Endpoint, emulator: Option<&mut Emulator>, patience: Duration) -> Result<Box<dyn Wire>, HilError> {
-    let begun = Instant::now();
-    let mut emulator = emulator;
-    loop {
-        if let Some(emulator) = &mut emulator {
-            emulator.check()?;
-        }
-        match endpoint.open() {
-            Err(_) if begun.elapsed() < patience && emulator.is_some() => {
-                std::thread::sleep(Duration::from_millis(20));
-            }
-            done => return done,
-        }
+    match emulator {
+        Some(emulator) => emulator.open(patience),
+        None => endpoint.open(),
     }
 }

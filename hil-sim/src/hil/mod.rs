@@ -8,6 +8,7 @@
 //! changes any result.
 
 mod command;
+mod datagrams;
 mod emulator;
 mod error;
 mod line;

@@ -10,6 +10,7 @@ use std::str::FromStr;
 use std::time::Duration;
 
 use super::HilError;
+use super::datagrams::Datagrams;
 
 /// Where a target is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,10 +22,12 @@ pub enum Endpoint {
         /// Bits a second; 8N1.
         baud: u32,
     },
-    /// A Unix socket, as an emulator's.
+    /// A Unix socket.
     Unix(PathBuf),
     /// A TCP socket, HOST:PORT.
     Tcp(String),
+    /// A UDP socket, HOST:PORT.
+    Udp(String),
 }
 
 impl FromStr for Endpoint {
@@ -34,6 +37,7 @@ impl FromStr for Endpoint {
         match text.split_once(':') {
             Some(("unix", path)) if !path.is_empty() => Ok(Self::Unix(path.into())),
             Some(("tcp", address)) if address.contains(':') => Ok(Self::Tcp(address.to_owned())),
+            Some(("udp", address)) if address.contains(':') => Ok(Self::Udp(address.to_owned())),
             _ => Err(HilError::Endpoint(text.to_owned())),
         }
     }
@@ -45,6 +49,7 @@ impl fmt::Display for Endpoint {
             Self::Serial { port, baud } => write!(f, "{port} at {baud} baud"),
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
             Self::Tcp(address) => write!(f, "tcp:{address}"),
+            Self::Udp(address) => write!(f, "udp:{address}"),
         }
     }
 }
@@ -115,6 +120,7 @@ impl Endpoint {
                 };
                 Ok(Box::new(connect().map_err(refused)?))
             }
+            Self::Udp(address) => Ok(Box::new(Datagrams::connect(address).map_err(refused)?)),
         }
     }
 }

@@ -15,7 +15,7 @@ use stm32f4xx_hal::nb;
 pub use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Config;
-use stm32f4xx_hal::serial::{self, Rx, RxISR, RxListen, Tx, TxISR, TxListen};
+use stm32f4xx_hal::serial::{self, Rx, RxISR, RxListen, Tx, TxListen};
 use stm32f4xx_hal::timer::{CounterUs, Event, Flag, PwmChannel};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
@@ -111,7 +111,7 @@ impl Serial for SerialPort {
     }
 
     fn send(&mut self, byte: u8) -> bool {
-        self.tx.is_tx_empty() && self.tx.write(byte).is_ok()
+        self.tx.write(byte).is_ok()
     }
 
     fn wake_when_free(&mut self, wanted: bool) {
