@@ -230,3 +230,21 @@ fn the_examples_of_eval_can_be_evaluated() {
     let output = evaluate(&lines.join("\n"));
     assert!(output.status.success(), "{}", text(&output.stdout));
 }
+
+#[test]
+fn what_a_target_can_not_fly_is_named_before_anything_is_flown() {
+    let output = program()
+        .args(["hil", "fig3a", "bent", "--connect", "unix:/no/such/socket"])
+        .output()
+        .expect("the program starts");
+    assert!(!output.status.success());
+    let errors = text(&output.stderr);
+    assert!(errors.contains("bent: a curve by formula"), "{errors}");
+}
+
+#[test]
+fn without_a_name_a_target_flies_what_it_can() {
+    let output = program().args(["hil", "--connect", "unix:/no/such/socket"]).output().expect("the program starts");
+    let errors = text(&output.stderr);
+    assert!(errors.contains("cannot connect to unix:/no/such/socket"), "{errors}");
+}

@@ -12,9 +12,9 @@ use std::process::ExitCode;
 
 use super::{Common, Ended, many};
 
-/// The built-in scenarios: the paper's figures, and curves of every kind.
-pub fn figures() -> Result<Vec<Scenario>, Box<dyn Error>> {
-    let names = scenario::FIGURES.iter().chain(scenario::CURVES).map(|(name, _)| *name);
+/// The built-in scenarios of these lists.
+pub fn built_in(lists: &[&[(&str, &str)]]) -> Result<Vec<Scenario>, Box<dyn Error>> {
+    let names = lists.iter().copied().flatten().map(|(name, _)| *name);
     Ok(names.filter_map(scenario::builtin).collect::<Result<_, _>>()?)
 }
 

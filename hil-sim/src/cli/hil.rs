@@ -3,6 +3,7 @@
 use hil_sim::hil::{self, Arguments, Flown};
 use hil_sim::reference::Reference;
 use hil_sim::report;
+use hil_sim::scenario::FIGURES;
 use std::fs;
 use std::io::{self, Write};
 
@@ -20,7 +21,8 @@ pub const TARGET_EXAMPLES: &str = "Examples:
 
 /// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
 pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
-    let scenarios = if arguments.files.is_empty() { fly::figures()? } else { fly::load(&arguments.files)? };
+    let scenarios =
+        if arguments.files.is_empty() { fly::built_in(&[FIGURES])? } else { fly::load(&arguments.files)? };
     let stop = many::interrupt()?;
 
     let planned = scenarios.len();

@@ -13,6 +13,7 @@ mod tune;
 
 use clap::{Parser, Subcommand};
 use hil_sim::run::Arithmetic;
+use hil_sim::scenario::{CURVES, FIGURES};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -159,7 +160,7 @@ pub fn run() -> Ended {
         Some(Command::Run { files, trap }) => {
             fly::fly(&common, fly::load(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 })
         }
-        Some(Command::Figures) | None => fly::fly(&common, fly::figures()?, Arithmetic::F32),
+        Some(Command::Figures) | None => fly::fly(&common, fly::built_in(&[FIGURES, CURVES])?, Arithmetic::F32),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),

@@ -113,7 +113,8 @@ pub struct Flown {
 /// Connects and flies `scenarios` one after the other.
 ///
 /// # Errors
-/// The target can't be reached, or can't fly a scenario. A target that is lost in flight ends the flights; those before are kept.
+/// The target can't be reached, or can't fly one of the scenarios: that is found out before the first. A target that is lost ends the flights; those
+/// before are kept.
 pub fn fly_all(
     arguments: &Arguments,
     scenarios: Vec<Scenario>,
@@ -126,6 +127,12 @@ pub fn fly_all(
         telemetry: !arguments.no_telemetry,
         ..Options::default()
     };
+    for scenario in &scenarios {
+        super::parameters(&scenario.controller).map_err(|error| match error {
+            HilError::Unsupported(reason) => HilError::Unsupported(format!("{}: {reason}", scenario.name)),
+            other => other,
+        })?;
+    }
     let mut target = match (&arguments.place.port, &arguments.place.connect, &arguments.place.emulate) {
         (Some(port), ..) => {
             Target::connect(Endpoint::Serial { port: port.clone(), baud: arguments.baud }, None, options)?
@@ -135,37 +142,47 @@ pub fn fly_all(
         _ => return Err(HilError::Endpoint(String::new())),
     };
     let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
+    let fly = run::Options { arithmetic: Arithmetic::F32, twin: options.telemetry, stop, progress };
     for scenario in scenarios {
-        target.prepare(&scenario)?;
-        let begun = Instant::now();
-        let flight = run::fly_on(
-            &scenario,
-            &mut target,
-            run::Options { arithmetic: Arithmetic::F32, twin: options.telemetry, stop, progress },
-        )
-        .map_err(|error| HilError::Unsupported(error.to_string()))?;
-        let elapsed_s = begun.elapsed().as_secs_f64();
-        let end = flight.end;
-        if end == End::Interrupted {
-            let _ = target.disarm();
-            break;
+        match fly_one(&mut target, scenario, fly, &mut flown) {
+            Ok(true) => {}
+            Ok(false) => break,
+            Err(error) if flown.outcomes.is_empty() => return Err(error),
+            Err(error) => {
+                flown.failure = Some(error);
+                break;
+            }
         }
-        let steps = target.statistics().cycles.len();
-        flown.links.push(link_report(
-            &scenario.name,
-            target.statistics(),
-            elapsed_s,
-            target.counts_per_instruction(),
-        ));
-        let times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
-        flown.outcomes.push(Outcome { scenario, flight, times_real_time });
-        if let End::Unanswered(_) = end {
-            flown.failure = target.take_failure();
-            return Ok(flown);
-        }
-        target.disarm()?;
     }
     Ok(flown)
+}
+
+/// One flight, from arming to disarming; whether to go on.
+fn fly_one(
+    target: &mut Target,
+    scenario: Scenario,
+    options: run::Options<'_>,
+    flown: &mut Flown,
+) -> Result<bool, HilError> {
+    target.prepare(&scenario)?;
+    let begun = Instant::now();
+    let flight = run::fly_on(&scenario, target, options).map_err(|error| HilError::Unsupported(error.to_string()))?;
+    let elapsed_s = begun.elapsed().as_secs_f64();
+    let end = flight.end;
+    if end == End::Interrupted {
+        target.disarm()?;
+        return Ok(false);
+    }
+    let steps = target.statistics().cycles.len();
+    flown.links.push(link_report(&scenario.name, target.statistics(), elapsed_s, target.counts_per_instruction()));
+    let times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
+    flown.outcomes.push(Outcome { scenario, flight, times_real_time });
+    if let End::Unanswered(_) = end {
+        flown.failure = target.take_failure();
+        return Ok(false);
+    }
+    target.disarm()?;
+    Ok(true)
 }
 
 fn link_report(name: &str, statistics: &Statistics, elapsed_s: f64, counts: Option<f64>) -> LinkReport {
