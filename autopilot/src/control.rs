@@ -7,11 +7,11 @@
 //!    └──────────── landed; or disarm, from anywhere ────────────┘
 //! ```
 //!
-//! The first good state finds a vehicle in flight, which is taken over from hover thrust and does what was asked for, or follows the path
-//! where nothing was; unless that is to idle: then it stands on the ground. From there on every control period steps the supervisor
-//! (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no number, and it knows
-//! what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a guard of its own
-//! instead, and knows OFF, FOLLOW and FAULT alone.
+//! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
+//! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
+//! the supervisor (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no
+//! number, and it knows what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a
+//! guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
 
 use controller::{Command, Fault, Mode, Request, State, Vector3};
 use link::dialect::{
@@ -108,7 +108,7 @@ impl Autopilot {
             mode: Mode::Off,
             fault: None,
             law: None,
-            request: Request::Follow,
+            request: Request::Idle,
             applied: Command::zero(),
             inbox: None,
             blind: false,
@@ -211,7 +211,7 @@ impl Autopilot {
         self.law = None;
         self.mode = Mode::Off;
         self.fault = None;
-        self.request = Request::Follow;
+        self.request = Request::Idle;
         self.last = None;
     }
 
@@ -333,6 +333,9 @@ impl Autopilot {
             }
             Some(frame) => {
                 self.counters.steps = self.counters.steps.wrapping_add(1);
+                if frame.action == LoadAction::LOAD_ACTION_START {
+                    self.request = Request::Follow;
+                }
                 begin(law, frame, &state, self.request, &self.applied);
             }
         }

@@ -76,6 +76,7 @@ proptest! {
     #[test]
     fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60), simulate in 0_u8..3) {
         let mut rig = Rig::new(driven(simulate.into()));
+        rig.ask(LoadMode::LOAD_MODE_FOLLOW);
         rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         let mut sequence = 0;
         for event in events {
@@ -128,6 +129,7 @@ fn one_bad_number_at_a_time_leads_nowhere() {
     for index in 0..29 {
         for value in odd {
             let mut rig = Rig::new(Autopilot::new(Boot::default()));
+            rig.ask(LoadMode::LOAD_MODE_FOLLOW);
             rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
             for sequence in 1..20 {
                 let words = if sequence % 3 == 0 { vec![(index, value.to_bits())] } else { vec![] };

@@ -6,7 +6,7 @@ use link::MavMessage;
 use link::dialect::*;
 use proptest::prelude::*;
 
-use crate::rig::{Rig, armed, driven, fly, frame, is_flyable};
+use crate::rig::{Rig, arm_in_flight, armed, driven, fly, frame, is_flyable};
 
 #[test]
 fn nothing_turns_unless_armed_and_given_a_state() {
@@ -18,12 +18,30 @@ fn nothing_turns_unless_armed_and_given_a_state() {
     autopilot.arm().unwrap();
     assert_eq!((autopilot.tick().outputs, autopilot.mode()), ([0.0; 4], Mode::Off));
 
-    let answer = fly(&mut autopilot, 2);
-    assert_eq!(autopilot.mode(), Mode::Engage);
-    assert!(answer.outputs.iter().all(|&duty| duty > 0.3), "{answer:?}");
+    let idle = fly(&mut autopilot, 2);
+    assert_eq!(autopilot.mode(), Mode::Idle);
+    assert!(idle.outputs.iter().all(|&duty| duty > 0.05 && duty < 0.12), "{idle:?}");
 
     autopilot.disarm();
     assert_eq!(fly(&mut autopilot, 3).outputs, [0.0; 4]);
+}
+
+#[test]
+fn asked_before_it_is_armed_it_takes_over_in_flight() {
+    for (request, mode) in [(Request::Follow, Mode::Engage), (Request::Hold, Mode::Hold), (Request::Land, Mode::Land)]
+    {
+        let mut autopilot = driven(0.0);
+        assert!(autopilot.request(request));
+        autopilot.arm().unwrap();
+        let answer = fly(&mut autopilot, 1);
+        assert_eq!(autopilot.mode(), mode);
+        assert!(answer.outputs.iter().all(|&duty| duty > 0.3), "{answer:?}");
+        // What was asked for was for that flight.
+        autopilot.disarm();
+        autopilot.arm().unwrap();
+        fly(&mut autopilot, 2);
+        assert_eq!(autopilot.mode(), Mode::Idle);
+    }
 }
 
 #[test]
@@ -43,13 +61,13 @@ fn a_simulated_vehicle_turns_no_rotor() {
 #[test]
 fn on_the_ground_it_idles_until_it_is_asked_to_fly() {
     let mut autopilot = driven(0.0);
-    assert!(autopilot.request(Request::Idle));
     autopilot.arm().unwrap();
-    let idle = fly(&mut autopilot, 1);
-    assert_eq!(autopilot.mode(), Mode::Idle);
-    assert!(idle.outputs.iter().all(|&duty| duty > 0.05 && duty < 0.12), "{idle:?}");
+    for sequence in 1..1000 {
+        fly(&mut autopilot, sequence);
+        assert_eq!(autopilot.mode(), Mode::Idle);
+    }
     assert!(autopilot.request(Request::Hold));
-    fly(&mut autopilot, 2);
+    fly(&mut autopilot, 1000);
     assert_eq!(autopilot.mode(), Mode::Hold);
 }
 
@@ -87,13 +105,13 @@ fn rotors_that_were_cut_stay_so_until_it_is_armed_anew() {
         if law > 0.5 {
             parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
         }
-        autopilot.arm().unwrap();
+        arm_in_flight(&mut autopilot);
         assert!(fly(&mut autopilot, 1).outputs.iter().all(|&duty| duty > 0.3));
         let cut = (0..60).map(|_| autopilot.tick()).last().unwrap();
         assert_eq!((cut.outputs, autopilot.mode()), ([0.0; 4], Mode::Fault), "law {law}");
         assert_eq!((fly(&mut autopilot, 2).outputs, autopilot.mode()), ([0.0; 4], Mode::Fault), "law {law}");
         autopilot.disarm();
-        autopilot.arm().unwrap();
+        arm_in_flight(&mut autopilot);
         assert!(fly(&mut autopilot, 3).outputs.iter().all(|&duty| duty > 0.3), "law {law}");
     }
 }
@@ -105,7 +123,7 @@ fn the_tracking_law_has_a_guard_of_its_own() {
     parameters.set(Parameter::Law, 1.0);
     parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
     assert!(!autopilot.request(Request::Hold));
-    autopilot.arm().unwrap();
+    arm_in_flight(&mut autopilot);
     assert_eq!(autopilot.tick().outputs, [0.0; 4]);
     let parameters = autopilot.parameters().clone();
     for (sequence, phase) in (1..).zip([0.0, f32::NAN, 0.0, f32::INFINITY, 0.0]) {

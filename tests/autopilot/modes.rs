@@ -18,13 +18,14 @@ struct Flight {
 }
 
 impl Flight {
-    /// Armed, at rest 1 m outside the circle.
+    /// Armed in flight, at rest 1 m outside the circle, to follow it.
     fn new() -> Self {
         Self::of(Autopilot::new(Boot::default()))
     }
 
     fn of(autopilot: Autopilot) -> Self {
         let mut rig = Rig::new(autopilot);
+        rig.ask(LoadMode::LOAD_MODE_FOLLOW);
         let (result, said) = rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         assert_eq!(result, MavResult::MAV_RESULT_ACCEPTED as u8, "{said:?}");
         Self { rig, body: Multibody::new(VehicleParameters::default(), &start().cast()), sequence: 0 }

@@ -1,7 +1,7 @@
 //! An autopilot with a link's other end: what is sent to it, and what it says.
 
 use autopilot::{Answer, Autopilot, Boot, Next, Parameter, Parameters, Server};
-use controller::{State, Vector3};
+use controller::{Request, State, Vector3};
 use link::dialect::*;
 use link::{Decoder, Encoder, MavMessage, state_frame};
 
@@ -26,10 +26,16 @@ pub fn driven(simulate: f32) -> Autopilot {
     autopilot
 }
 
+/// Armed to take over in flight and follow the path.
 pub fn armed(simulate: f32) -> Autopilot {
     let mut autopilot = driven(simulate);
-    autopilot.arm().unwrap();
+    arm_in_flight(&mut autopilot);
     autopilot
+}
+
+pub fn arm_in_flight(autopilot: &mut Autopilot) {
+    assert!(autopilot.request(Request::Follow));
+    autopilot.arm().unwrap();
 }
 
 /// A state, and the step on it.
