@@ -440,6 +440,30 @@ fn a_killed_emulator_ends_the_flight() {
 }
 
 #[test]
+fn every_logged_sample_has_its_telemetry() {
+    let options = Options { telemetry: true, ..OPTIONS };
+    // Also where the law starts anew at another sample than those that are logged.
+    let mut stopped = scenario("fig2a", 8.0);
+    stopped.log_period_s = 0.007;
+    for scenario in [scenario("fig5", 2.0), stopped] {
+        let mut target = soft_target(options, |stream| stream).unwrap();
+        target.prepare(&scenario).unwrap();
+        let there = fly(&scenario, &mut target);
+        let here = fly(&scenario, &mut Pilot::<f32>::new(&scenario.controller).unwrap());
+        assert_eq!((there.end, there.log.len()), (End::Complete, here.log.len()));
+        for (there, here) in there.log.iter().zip(&here.log) {
+            let decisions = there.decision.zip(here.decision);
+            assert_eq!(there.decision.is_some(), here.decision.is_some());
+            if let Some((there, here)) = decisions {
+                let (there, here) = (there.telemetry.unwrap(), here.telemetry.unwrap());
+                assert_eq!((there.xi, there.nu, there.integral), (here.xi, here.nu, here.integral));
+                assert_eq!(there.margins, here.margins);
+            }
+        }
+    }
+}
+
+#[test]
 fn a_cut_line_is_mended_and_nothing_is_lost() {
     let Some(images) = images() else { return };
     let (machine, image) = &images[1];

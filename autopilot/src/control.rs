@@ -18,7 +18,7 @@ use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
-use crate::law::{Law, SetupRefused, Step};
+use crate::law::{Law, SetupRefused};
 use crate::parameters::{Parameter, Parameters};
 use crate::report;
 
@@ -339,6 +339,7 @@ impl Autopilot {
                 begin(law, frame, &state, self.request, &self.applied);
             }
         }
+        let integral = law.integral();
         let was_flying = is_flying(law.mode());
         let step = law.step(&state, self.request, frame.map_or(0.0, |frame| frame.reference_phase));
         let has_fallen_back = was_flying && self.request == Request::Follow && !is_flying(step.mode);
@@ -362,7 +363,13 @@ impl Autopilot {
             answer.outputs = rotor;
         }
         if is_good {
-            answer.telemetry = self.telemetry(answer.command.sequence, &state, &step);
+            let is_asked_for = frame.is_some_and(|frame| frame.telemetry != 0);
+            if self.is_telemetry_s_turn() || is_asked_for {
+                answer.telemetry = self
+                    .law
+                    .as_ref()
+                    .map(|law| report::telemetry(answer.command.sequence, law, &state, integral, &step));
+            }
             if step.mode == Mode::Off {
                 // The supervisor has landed.
                 self.disarm();
@@ -371,14 +378,12 @@ impl Autopilot {
         answer
     }
 
-    fn telemetry(&mut self, sequence: u32, state: &State<f32>, step: &Step) -> Option<LOAD_TELEMETRY_DATA> {
+    /// Counts a step, and says whether it is one of every `TLM_EVERY`.
+    fn is_telemetry_s_turn(&mut self) -> bool {
         let every = self.parameters.get(Parameter::TelemetryEvery) as u32;
-        if every == 0 || self.until_telemetry > 0 {
-            self.until_telemetry = self.until_telemetry.saturating_sub(1);
-            return None;
-        }
-        self.until_telemetry = every - 1;
-        Some(report::telemetry(sequence, self.law.as_ref()?, state, step))
+        let is_turn = every > 0 && self.until_telemetry == 0;
+        self.until_telemetry = if is_turn { every - 1 } else { self.until_telemetry.saturating_sub(1) };
+        is_turn
     }
 }
 

@@ -100,13 +100,19 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
     text
 }
 
-/// Where the command of a `step` on `state` came from.
-pub fn telemetry(sequence: u32, law: &Law, state: &State<f32>, step: &Step) -> LOAD_TELEMETRY_DATA {
+/// Where the command of a `step` on `state` came from, with the `integral` as it was before.
+pub fn telemetry(
+    sequence: u32,
+    law: &Law,
+    state: &State<f32>,
+    integral: [f32; 3],
+    step: &Step,
+) -> LOAD_TELEMETRY_DATA {
     let (vehicle, found) = (law.vehicle(), law.disturbance());
     let lambda = Model::at(vehicle, state).lambda(step.command.thrust);
     let mut telemetry = LOAD_TELEMETRY_DATA {
         sequence,
-        integral: law.integral().map(number),
+        integral: integral.map(number),
         payload_force: found.payload_force(vehicle, &state.rod).into(),
         uav_force: found.uav_force(vehicle, &state.rod).into(),
         uav_torque: found.torque.into(),

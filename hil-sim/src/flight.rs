@@ -50,10 +50,10 @@ impl Steers for Pilot<f32> {
 
     #[inline]
     fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering {
-        let Decision { input, margins, .. } = self.step(state, t_s);
+        let Decision { input, telemetry, .. } = self.step(state, t_s);
         Steering {
             command: Command { thrust: input.thrust, torque: Vector3::from(input.torque) },
-            margins: Some(margins),
+            margins: telemetry.map(|telemetry| telemetry.margins),
             mode: Mode::Follow,
             fault: None,
             disturbance: self.disturbance(),

@@ -34,6 +34,13 @@ pub struct Decision {
     pub input: Input,
     /// ζ at the sample, m/s²⁺ᵏ.
     pub zeta: [f64; 4],
+    /// Where it came from; of a target at the other end of a link, with the samples that are logged.
+    pub telemetry: Option<Telemetry>,
+}
+
+/// Where an answer came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telemetry {
     /// ξ̃ = ∫(h1, h2, h3) up to the sample; zero for the tracking law, which has none.
     pub integral: [f64; 3],
     /// Outputs and derivatives, padded with zeros to the longer law's 20.
@@ -60,14 +67,6 @@ pub struct Observed {
 }
 
 impl Observed {
-    /// Not known.
-    pub const NOTHING: Self = Self {
-        payload_force: [f64::NAN; 3],
-        uav_force: [f64::NAN; 3],
-        torque: [f64::NAN; 3],
-        payload_mass: f64::NAN,
-    };
-
     fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
         let numbers = |v: Vector3<T>| v.map(T::to_f64).into();
         Self {
@@ -221,11 +220,13 @@ impl<T: Real> Pilot<T> {
         Decision {
             input: input(&command),
             zeta: zeta.map(T::to_f64),
-            integral: integral.map(T::to_f64),
-            xi,
-            nu: nu.map(T::to_f64),
-            margins: margins_f64(&margins),
-            observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
+            telemetry: Some(Telemetry {
+                integral: integral.map(T::to_f64),
+                xi,
+                nu: nu.map(T::to_f64),
+                margins: margins_f64(&margins),
+                observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
+            }),
         }
     }
 }

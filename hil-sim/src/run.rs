@@ -134,7 +134,7 @@ fn fly_with<A: Answers>(
     let period = 1.0 / rate_hz;
     let periods = |seconds: f64| (seconds * rate_hz).round() as u64;
     let steps = scenario.steps();
-    let log_every = periods(scenario.log_period_s).max(1);
+    let log_every = scenario.log_every();
     let (stopped_at, released_at) = match scenario.obstacle {
         Some(obstacle) => (periods(obstacle.at_s), periods(obstacle.at_s + obstacle.hold_s)),
         None => (u64::MAX, u64::MAX),

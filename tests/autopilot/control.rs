@@ -96,6 +96,28 @@ fn a_lost_state_is_coasted_over_then_sunk_from_then_flown_again() {
 }
 
 #[test]
+fn telemetry_comes_in_its_turn_and_when_it_is_asked_for() {
+    for (every, asked, expected) in [
+        (0.0, 0, [false; 6]),
+        (3.0, 0, [true, false, false, true, false, false]),
+        (0.0, 4, [false, false, false, true, false, false]),
+    ] {
+        let mut autopilot = driven(0.0);
+        autopilot.parameters_mut().unwrap().set(Parameter::TelemetryEvery, every);
+        arm_in_flight(&mut autopilot);
+        let came = [1, 2, 3, 4, 5, 6].map(|sequence| {
+            autopilot.receive(&LOAD_STATE_DATA { telemetry: u8::from(sequence == asked), ..frame(sequence) });
+            autopilot.tick().telemetry.map(|telemetry| telemetry.sequence)
+        });
+        assert_eq!(
+            came,
+            [1, 2, 3, 4, 5, 6].map(|sequence| expected[sequence as usize - 1].then_some(sequence)),
+            "{every} {asked}"
+        );
+    }
+}
+
+#[test]
 fn rotors_that_were_cut_stay_so_until_it_is_armed_anew() {
     for law in [0.0, 1.0] {
         let mut autopilot = driven(0.0);

@@ -49,7 +49,7 @@ pub struct Arguments {
     /// Fly by the target's own timer and the clock on the wall, not in lockstep.
     #[arg(long)]
     pub real_time: bool,
-    /// Leave ξ, ν and margins out of the link: for slow lines.
+    /// Do not ask for ξ, ν, margins and what the observers found, which come with the samples that are logged: for slow lines.
     #[arg(long)]
     pub no_telemetry: bool,
     /// Seconds without an answer after which the target is lost.

@@ -20,7 +20,7 @@ pub struct Options {
     pub patience: Duration,
     /// Without an answer for this long the question is sent again.
     pub retry: Duration,
-    /// Ask for ξ, ν and the margins of each step: more to send, and needed for the deviation of ξ.
+    /// Ask for ξ, ν, margins and what the observers found with the samples that are logged.
     pub telemetry: bool,
 }
 

@@ -10,7 +10,7 @@ use link::dialect::*;
 
 use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
-use crate::pilot::{Answers, Decision, Observed};
+use crate::pilot::{Answers, Decision, Observed, Telemetry};
 use crate::plant::Input;
 use crate::scenario::{ControllerSpec, Law, Scenario};
 
@@ -24,7 +24,9 @@ pub struct Target {
     /// Largest thrust, and largest torques.
     limits: (f32, [f32; 3]),
     zeta: [f64; 4],
-    integral: [f64; 3],
+    /// Control periods a second, and from one logged sample to the next.
+    rate_hz: f64,
+    log_every: u64,
     command: Option<LOAD_COMMAND_DATA>,
     epoch: Instant,
     failure: Option<HilError>,
@@ -65,7 +67,8 @@ impl Target {
             reference_rate: 0.0,
             limits: (0.0, [0.0; 3]),
             zeta: [0.0; 4],
-            integral: [0.0; 3],
+            rate_hz: 0.0,
+            log_every: 1,
             command: None,
             epoch: Instant::now(),
             failure: None,
@@ -123,14 +126,15 @@ impl Target {
         let mut parameters = super::parameters(&scenario.controller)?;
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
         parameters.set(Parameter::Simulate, simulate);
-        parameters.set(Parameter::TelemetryEvery, f32::from(u8::from(self.line.options().telemetry)));
+        // With the states that ask for it.
+        parameters.set(Parameter::TelemetryEvery, 0.0);
         let torques = [Parameter::TorqueMax1, Parameter::TorqueMax2, Parameter::TorqueMax3];
         self.limits = (parameters.get(Parameter::ThrustMax), torques.map(|axis| parameters.get(axis)));
         self.arm(false)?;
         self.configure(&parameters)?;
         self.arm(true)?;
-        (self.zeta, self.integral) = ([0.0; 4], [0.0; 3]);
-        (self.start, self.command) = (None, None);
+        (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
+        (self.zeta, self.start, self.command) = ([0.0; 4], None, None);
         self.epoch = Instant::now();
         Ok(())
     }
@@ -211,12 +215,13 @@ impl Target {
         // A millionth of a second finer than any control period; 0 would be no time.
         frame.time_usec = (t_s * 1e6).round() as u64 + 1;
         frame.sequence = self.sequence;
+        let is_logged = ((t_s * self.rate_hz).round() as u64).is_multiple_of(self.log_every);
+        frame.telemetry = u8::from(is_logged && self.line.options().telemetry);
         frame.reference_phase = ((self.reference_rate * t_s) % std::f64::consts::TAU) as f32;
         if let Some(zeta) = self.start.take() {
             frame.action = LoadAction::LOAD_ACTION_START;
             frame.zeta = zeta.map(|z| z as f32);
             self.zeta = frame.zeta.map(f64::from);
-            self.integral = [0.0; 3];
         }
         frame
     }
@@ -277,6 +282,7 @@ impl Target {
         }
         let command = fresh.or_else(|| self.command.clone()).ok_or_else(|| self.line.lost(begun, 1))?;
         self.command = Some(command.clone());
+        let telemetry = telemetry.filter(|data| data.sequence == command.sequence);
         self.decide(&command, telemetry.as_ref())
     }
 
@@ -302,23 +308,14 @@ impl Target {
         }
         self.line.statistics.faults |= command.faults.bits();
         self.line.statistics.cycles.push(command.cycles);
-        // The answer has ζ and ξ̃ at the hold's end; a decision has them at its start.
-        let (zeta, integral) = (self.zeta, self.integral);
-        self.zeta = command.zeta.map(f64::from);
-        let mut decision = Decision {
-            input: Input { thrust: command.thrust.into(), torque: command.torque.map(f64::from) },
-            zeta,
-            integral,
-            xi: [f64::NAN; 20],
-            nu: [f64::NAN; 4],
-            margins: no_margins(),
-            observed: Observed::NOTHING,
-        };
-        if let Some(data) = telemetry {
-            self.integral = data.integral.map(f64::from);
-            decision.xi = data.xi.map(f64::from);
-            decision.nu = data.nu.map(f64::from);
-            decision.margins = Margins {
+        // The answer has ζ at the hold's end; a decision has it at its start.
+        let zeta = std::mem::replace(&mut self.zeta, command.zeta.map(f64::from));
+        let input = Input { thrust: command.thrust.into(), torque: command.torque.map(f64::from) };
+        let telemetry = telemetry.map(|data| Telemetry {
+            integral: data.integral.map(f64::from),
+            xi: data.xi.map(f64::from),
+            nu: data.nu.map(f64::from),
+            margins: Margins {
                 q3: data.q3.into(),
                 q_b3: data.q_b3.into(),
                 lambda: data.specific_force.into(),
@@ -326,15 +323,15 @@ impl Target {
                 path_det: data.path_det.into(),
                 reach: data.reach.into(),
                 cos_phi_squared: data.cos_phi_squared.into(),
-            };
-            decision.observed = Observed {
+            },
+            observed: Observed {
                 payload_force: data.payload_force.map(f64::from),
                 uav_force: data.uav_force.map(f64::from),
                 torque: data.uav_torque.map(f64::from),
                 payload_mass: data.payload_mass.into(),
-            };
-        }
-        Ok(decision)
+            },
+        });
+        Ok(Decision { input, zeta, telemetry })
     }
 }
 
@@ -350,12 +347,6 @@ impl Answers for Target {
         };
         answer.map_err(|error| self.failure = Some(error)).ok()
     }
-}
-
-/// Where no telemetry came.
-fn no_margins() -> Margins<f64> {
-    let none = f64::NAN;
-    Margins { q3: none, q_b3: none, lambda: none, kappa: none, path_det: none, reach: none, cos_phi_squared: none }
 }
 
 fn named_value(message: &MavMessage, name: &str) -> Option<f32> {

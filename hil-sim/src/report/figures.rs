@@ -200,7 +200,7 @@ fn curve_sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
 
 /// An element of the follower's ξ.
 fn xi(sample: &Sample, index: usize) -> Option<f64> {
-    sample.decision.as_ref().map(|decision| decision.xi[index])
+    sample.decision?.telemetry.map(|telemetry| telemetry.xi[index])
 }
 
 fn panel(run: &Outcome) -> String {

@@ -1,4 +1,4 @@
-//! The CSV file of a flight: one line a logged sample, SI units and radians, empty where there is no command.
+//! The CSV file of a flight: one line a logged sample, SI units and radians, empty where there is no command, or no telemetry.
 
 use crate::batch::Outcome;
 use crate::plant::index;
@@ -68,15 +68,17 @@ pub fn csv(outcome: &Outcome) -> Result<Vec<u8>, csv::Error> {
         line.extend(sample.x);
         line.push(law.distance(position));
         if let Some(decision) = &sample.decision {
-            let margins = &decision.margins;
             line.push(decision.input.thrust);
             line.extend(decision.input.torque);
             line.extend(decision.zeta);
-            line.extend(decision.integral);
-            line.extend(decision.nu);
+        }
+        if let Some(telemetry) = sample.decision.and_then(|decision| decision.telemetry) {
+            let margins = &telemetry.margins;
+            line.extend(telemetry.integral);
+            line.extend(telemetry.nu);
             line.extend([margins.q3, margins.q_b3, margins.lambda, margins.kappa, margins.path_det]);
             line.extend([margins.reach, margins.cos_phi_squared]);
-            let observed = &decision.observed;
+            let observed = &telemetry.observed;
             line.extend([observed.payload_force, observed.uav_force, observed.torque].concat());
             line.push(observed.payload_mass);
         }

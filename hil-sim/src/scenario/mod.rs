@@ -243,4 +243,10 @@ impl Scenario {
         // Rounded: durations are whole numbers of periods, up to the rounding of the product.
         (self.duration_s * self.controller.rate_hz).round() as u64
     }
+
+    /// Control periods from one logged sample to the next.
+    #[must_use]
+    pub fn log_every(&self) -> u64 {
+        ((self.log_period_s * self.controller.rate_hz).round() as u64).max(1)
+    }
 }
