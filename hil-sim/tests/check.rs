@@ -174,6 +174,44 @@ fn a_formula_that_is_not_defined_is_refused_at_its_place() {
     assert_eq!(refusal(&yaw).reason, Reason::Undefined);
 }
 
+/// The circle with this speed and this yaw.
+fn profiled(speed: &str, yaw: &str) -> PathSpec {
+    path(json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": speed, "yaw": yaw }))
+}
+
+#[test]
+fn a_speed_or_yaw_that_jumps_is_refused_at_its_place() {
+    let branch = [-5.0, 0.0, -10.0];
+    let jumps = [
+        (profiled("2 + 0.1*atan2(y, x)", "0"), Reason::SpeedJumps { order: 0 }, branch),
+        // Half an angle is half a turn off after a lap.
+        (profiled("1", "0.5*atan2(y, x)"), Reason::YawJumps { order: 0 }, branch),
+        // The law takes one turn for none, not three.
+        (profiled("1", "-3*atan2(y, x)"), Reason::YawJumps { order: 0 }, branch),
+    ];
+    for (path, reason, place) in jumps {
+        let refusal = refusal(&path);
+        assert_eq!(refusal.reason, reason, "{refusal}");
+        assert_near(&refusal, place, 1e-3);
+    }
+    let kinks = [
+        (profiled("1 + 0.1*sqrt((y - 1)^2)", "0"), Reason::SpeedJumps { order: 1 }),
+        (profiled("1", "0.1*sqrt((y - 1)^2)"), Reason::YawJumps { order: 1 }),
+    ];
+    for (path, reason) in kinks {
+        let refusal = refusal(&path);
+        assert_eq!(refusal.reason, reason, "{refusal}");
+        assert!((refusal.place.position.y - 1.0).abs() < 1e-3, "{refusal}");
+    }
+}
+
+#[test]
+fn a_speed_or_yaw_that_only_changes_fast_is_accepted() {
+    for (speed, yaw) in [("1", "atan2(y, x)"), ("2 + tanh(100*x)", "0.001*y"), ("1e-3*x + 1", "tanh(100*y)")] {
+        check(&profiled(speed, yaw)).unwrap_or_else(|refusal| panic!("{speed}, {yaw}: {refusal}"));
+    }
+}
+
 #[test]
 fn surfaces_that_do_not_cut_each_other_are_refused() {
     assert_eq!(refusal(&implicit("x^2 + y^2 + 1", "z")).reason, Reason::NoCurve);

@@ -1,12 +1,13 @@
 //! Can it be flown? A path is walked once round before anyone takes off.
 //!
-//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings? Then the flight: with the outputs and
+//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings, without jumps of speed or yaw? Then the flight: with the outputs and
 //! all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from the curve and
 //! v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
 pub mod lap;
 mod limits;
 pub mod probe;
+mod profile;
 pub mod refusal;
 mod report;
 pub mod steady;
@@ -136,6 +137,7 @@ pub fn check<P: Path<f64> + ?Sized>(
     let branches = lap.branches()?;
 
     let motions = motions(path, &lap)?;
+    profile::continuous(path, &lap)?;
     let mut lap_time = 0.0;
     let mut regularity = Range::new(lap.nodes()[0].regularity, lap.nodes()[0].place());
     let mut demand: Option<Demand> = None;

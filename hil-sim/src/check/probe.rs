@@ -139,6 +139,14 @@ pub fn yaw<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> [f64; 3] {
     [0, 1, 2].map(|k| yaw.derivative(k))
 }
 
+/// v_d and ψ_d along a motion of unit speed, with their derivatives by arc length.
+pub fn profile<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> [[f64; 2]; 2] {
+    let outputs = path.outputs(&series(motion));
+    // h3 = 1 − v_d, ψ_d as it is.
+    let speed = outputs.speed_error;
+    [[1.0 - speed.value(), -speed.derivative(1)], [0, 1].map(|k| outputs.yaw.derivative(k))]
+}
+
 /// A motion as the series that paths take.
 fn series(motion: &Motion) -> [Series<f64, ORDERS>; 3] {
     [0, 1, 2].map(|axis| Series(motion.map(|coefficient| coefficient[axis])))

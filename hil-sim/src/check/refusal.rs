@@ -53,6 +53,16 @@ pub enum Reason {
     },
     /// The prescribed speed is zero here, or changes sign.
     Stops,
+    /// The prescribed speed jumps, or a derivative of it by arc length.
+    SpeedJumps {
+        /// The order: 0 for the speed itself.
+        order: usize,
+    },
+    /// The same of the yaw.
+    YawJumps {
+        /// The order: 0 for the yaw itself.
+        order: usize,
+    },
     /// The payload would be in free fall, or the UAV without thrust.
     FreeFall,
 }
@@ -81,6 +91,10 @@ impl fmt::Display for Reason {
             Self::Irregular => f.write_str("∇h1 × ∇h2 = 0: the curve crosses itself, or its surfaces only touch"),
             Self::Crossing { other } => write!(f, "the curve crosses itself: the same point lies {other:.3} m along"),
             Self::Stops => f.write_str("the prescribed speed is zero"),
+            Self::SpeedJumps { order: 0 } => f.write_str("the prescribed speed jumps"),
+            Self::SpeedJumps { order } => write!(f, "the prescribed speed's derivative of order {order} jumps"),
+            Self::YawJumps { order: 0 } => f.write_str("the prescribed yaw jumps"),
+            Self::YawJumps { order } => write!(f, "the prescribed yaw's derivative of order {order} jumps"),
             Self::FreeFall => {
                 f.write_str("the prescribed motion leaves the payload in free fall or the UAV without thrust")
             }

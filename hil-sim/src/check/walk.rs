@@ -98,7 +98,7 @@ fn advance<P: Path<f64> + ?Sized>(
 }
 
 /// A point of the lap with the curve's derivatives there.
-fn node<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Node, Refusal> {
+pub(super) fn node<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Node, Refusal> {
     let place = Place { position: frame.position, arc };
     let motion = unit_speed(path, frame).ok_or_else(|| Reason::NotSmooth.at(place))?;
     Ok(Node { arc, motion, regularity: frame.regularity() })
