@@ -40,8 +40,8 @@ impl Datagrams {
     /// Over a socket that is connected.
     pub fn over(socket: UdpSocket) -> io::Result<Self> {
         socket.set_nonblocking(true)?;
-        // The system may give less: a datagram without room is lost, and asked for again.
-        socket2::SockRef::from(&socket).set_recv_buffer_size(ROOM)?;
+        // The system may give less, or refuse: a datagram without room is lost, and asked for again.
+        let _ = socket2::SockRef::from(&socket).set_recv_buffer_size(ROOM);
         Ok(Self { socket, patience: WATCHFUL })
     }
 }
