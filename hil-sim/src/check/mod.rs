@@ -1,9 +1,10 @@
 //! Can it be flown? A path is walked once round before anyone takes off.
 //!
-//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings, without jumps of speed or yaw? Then the flight: with the outputs and
-//! all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from the curve and
-//! v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
+//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings, without jumps of speed or yaw? Then the
+//! flight: with the outputs and all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from
+//! the curve and v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
+mod jumps;
 pub mod lap;
 mod limits;
 pub mod probe;

@@ -139,12 +139,30 @@ pub fn yaw<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> [f64; 3] {
     [0, 1, 2].map(|k| yaw.derivative(k))
 }
 
-/// v_d and ψ_d along a motion of unit speed, with their derivatives by arc length.
-pub fn profile<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> [[f64; 2]; 2] {
+/// Prescribed speed and yaw at a point, with their derivatives by arc length.
+#[derive(Clone, Copy, Debug)]
+pub struct Profile {
+    /// v_d, m/s.
+    pub speed: f64,
+    /// 1/s.
+    pub speed_slope: f64,
+    /// ψ_d, rad.
+    pub yaw: f64,
+    /// rad/m.
+    pub yaw_slope: f64,
+}
+
+/// Speed and yaw along a motion of unit speed.
+pub fn profile<P: Path<f64> + ?Sized>(path: &mut P, motion: &Motion) -> Profile {
     let outputs = path.outputs(&series(motion));
-    // h3 = 1 − v_d, ψ_d as it is.
-    let speed = outputs.speed_error;
-    [[1.0 - speed.value(), -speed.derivative(1)], [0, 1].map(|k| outputs.yaw.derivative(k))]
+    // h3 = 1 − v_d.
+    let (error, yaw) = (outputs.speed_error, outputs.yaw);
+    Profile {
+        speed: 1.0 - error.value(),
+        speed_slope: -error.derivative(1),
+        yaw: yaw.value(),
+        yaw_slope: yaw.derivative(1),
+    }
 }
 
 /// A motion as the series that paths take.

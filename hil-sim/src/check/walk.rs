@@ -1,5 +1,6 @@
 //! Walking a curve once round: by its tangent forwards, by Newton's method back onto it, in steps that follow its bends.
 
+use super::jumps::{Point, jump};
 use super::lap::{Lap, Node};
 use super::probe::{Frame, Motion, length, unit_speed};
 use super::refusal::{Place, Reason, Refusal};
@@ -20,8 +21,6 @@ const STEPS: usize = 200_000;
 const FURTHEST: f64 = 1e5;
 /// Orders whose jumps are looked for: for these the polynomial of order six predicts to third order in the step, or better.
 const CHECKED_ORDERS: [usize; 3] = [2, 3, 4];
-/// A jump of this part of the derivative's largest value on the lap is one.
-const JUMP: f64 = 0.01;
 /// |∇h1 × ∇h2| below this part of its largest value on the lap is zero up to rounding.
 const IRREGULAR: f64 = 1e-6;
 
@@ -135,35 +134,22 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
 
 /// Looks for jumps of the curve's second to fourth derivatives, where its pieces are smooth but do not fit.
 ///
-/// From each node its Taylor polynomial says what the next node's derivatives are. Where it errs, the stretch between is halved,
-/// towards the larger error: on a smooth curve that error falls, at a jump it stays.
+/// From each node its Taylor polynomial says what the next node's derivatives are.
 fn smooth<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
     path.engage(&nodes[0].position());
     let scales = CHECKED_ORDERS
         .map(|order| nodes.iter().map(|node| length(&node.motion[order])).fold(f64::MIN_POSITIVE, f64::max));
-    let errors = |from: &Node, to: &Node| {
+    let errors = |(from, ()): &Point<()>, (to, ()): &Point<()>| {
         let predicted = shifted(&from.motion, to.arc - from.arc);
         let error = |i: usize| length(&(predicted[CHECKED_ORDERS[i]] - to.motion[CHECKED_ORDERS[i]])) / scales[i];
         [error(0), error(1), error(2)]
     };
-    let largest = |from: &Node, to: &Node| errors(from, to).into_iter().fold(0.0, f64::max);
-    for [from, to] in nodes.array_windows() {
-        let (mut from, mut to) = (*from, *to);
-        let least = 1e-6 * (to.arc - from.arc);
-        while largest(&from, &to) > JUMP {
-            if to.arc - from.arc < least {
-                // The lowest order: those above it jump as well.
-                let order = CHECKED_ORDERS.into_iter().zip(errors(&from, &to)).find(|(_, error)| *error > JUMP);
-                return Err(Reason::Jump { order: order.map_or(2, |(order, _)| order) }.at(from.place()));
-            }
-            let half = 0.5 * (to.arc - from.arc);
-            let ahead = from.position() + from.tangent() * half;
-            let Some(frame) = Frame::on_curve(path, ahead, half) else { break };
-            let middle = node(path, &frame, from.arc + half)?;
-            if largest(&from, &middle) > largest(&middle, &to) { to = middle } else { from = middle }
-        }
+    let points: Vec<Point<()>> = nodes.iter().map(|node| (*node, ())).collect();
+    // The lowest order: those above it jump as well.
+    match jump(path, &points, |_, _| (), errors)? {
+        Some((which, place)) => Err(Reason::Jump { order: CHECKED_ORDERS[which] }.at(place)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// A Taylor polynomial about a point `ahead`: Horner's synthetic division.
