@@ -130,13 +130,11 @@ fn fly_with<A: Answers>(
     options: Options<'_>,
 ) -> Flight {
     let started = ThreadTime::now();
-    let rate_hz = scenario.controller.rate_hz;
-    let period = 1.0 / rate_hz;
-    let periods = |seconds: f64| (seconds * rate_hz).round() as u64;
+    let period = 1.0 / scenario.controller.rate_hz;
     let steps = scenario.steps();
     let log_every = scenario.log_every();
     let (stopped_at, released_at) = match scenario.obstacle {
-        Some(obstacle) => (periods(obstacle.at_s), periods(obstacle.at_s + obstacle.hold_s)),
+        Some(obstacle) => (scenario.periods(obstacle.at_s), scenario.periods(obstacle.at_s + obstacle.hold_s)),
         None => (u64::MAX, u64::MAX),
     };
 

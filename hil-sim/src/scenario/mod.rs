@@ -240,13 +240,19 @@ impl Scenario {
     /// Control periods in the flight.
     #[must_use]
     pub fn steps(&self) -> u64 {
-        // Rounded: durations are whole numbers of periods, up to the rounding of the product.
-        (self.duration_s * self.controller.rate_hz).round() as u64
+        self.periods(self.duration_s)
+    }
+
+    /// Control periods in so many seconds.
+    #[must_use]
+    pub fn periods(&self, seconds: f64) -> u64 {
+        // Rounded: times are whole numbers of periods, up to the rounding of the product.
+        (seconds * self.controller.rate_hz).round() as u64
     }
 
     /// Control periods from one logged sample to the next.
     #[must_use]
     pub fn log_every(&self) -> u64 {
-        ((self.log_period_s * self.controller.rate_hz).round() as u64).max(1)
+        self.periods(self.log_period_s).max(1)
     }
 }
