@@ -17,3 +17,28 @@ fn its_scenario_is_valid_and_flies() {
     assert_eq!(flight.end, End::Complete);
     assert!(flight.results.settle_s.unwrap() < 10.0);
 }
+
+#[test]
+fn its_instruction_counts_are_the_expected_ones() {
+    let expected: serde_json::Value =
+        serde_json::from_str(include_str!("../../firmware/bench/expected.json")).expect("JSON");
+    let count = |case: &str, end: &str| {
+        let count = expected["instructions"][case][end].as_u64().expect("a count");
+        format!("{},{:03}", count / 1000, count % 1000)
+    };
+    for (case, row) in [
+        ("circle", "| circle |"),
+        ("ellipse", "| ellipse, yaw along it |"),
+        ("bent", "| bent curve, speed and yaw of position |"),
+        ("fourier8", "| Fourier loop of 8 harmonics |"),
+    ] {
+        let shown = format!("{row} {} to {} |", count(case, "best"), count(case, "worst"));
+        assert!(README.contains(&shown), "{shown}");
+    }
+    for (case, row) in
+        [("joining", "| circle, while joining it from afar |"), ("track", "| tracking (without the supervisor) |")]
+    {
+        let shown = format!("{row} {}", count(case, "worst"));
+        assert!(README.contains(&shown), "{shown}");
+    }
+}
