@@ -18,7 +18,7 @@ use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
-use crate::law::{Law, SetupRefused};
+use crate::law::{Law, SetupRefused, Step};
 use crate::parameters::{Parameter, Parameters};
 use crate::report;
 
@@ -346,22 +346,8 @@ impl Autopilot {
         self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
         (self.mode, self.fault, self.applied) = (step.mode, step.fault, step.command);
 
-        faults |= step.fault.map_or(LoadFault::empty(), report::fault);
-        faults.set(LoadFault::LOAD_FAULT_LIMITED, step.answer.is_some_and(|answer| answer.limited));
         let rotor = law.actuators().duties(&step.command);
-        let (zeta, u_zeta) = step.answer.map_or(([0.0; 4], 0.0), |answer| (answer.zeta, answer.u_zeta));
-        let mut answer = self.nothing(frame, faults);
-        answer.command = LOAD_COMMAND_DATA {
-            thrust: step.command.thrust,
-            torque: step.command.torque.into(),
-            zeta: zeta.map(report::number),
-            u_zeta,
-            rotor,
-            ..answer.command
-        };
-        if self.drive() == Drive::Flight {
-            answer.outputs = rotor;
-        }
+        let mut answer = self.answer(frame, faults, &step, rotor);
         if is_good {
             let is_asked_for = frame.is_some_and(|frame| frame.telemetry != 0);
             if self.is_telemetry_s_turn() || is_asked_for {
@@ -376,6 +362,24 @@ impl Autopilot {
             }
         }
         answer
+    }
+
+    /// What a `step` says to the link and the rotors.
+    fn answer(&self, frame: Option<&LOAD_STATE_DATA>, faults: LoadFault, step: &Step, rotor: [f32; 4]) -> Answer {
+        let mut faults = faults | step.fault.map_or(LoadFault::empty(), report::fault);
+        faults.set(LoadFault::LOAD_FAULT_LIMITED, step.answer.is_some_and(|answer| answer.limited));
+        let (zeta, u_zeta) = step.answer.map_or(([0.0; 4], 0.0), |answer| (answer.zeta, answer.u_zeta));
+        let Answer { command, .. } = self.nothing(frame, faults);
+        let command = LOAD_COMMAND_DATA {
+            thrust: step.command.thrust,
+            torque: step.command.torque.into(),
+            zeta: zeta.map(report::number),
+            u_zeta,
+            rotor,
+            ..command
+        };
+        let outputs = if self.drive() == Drive::Flight { rotor } else { [0.0; 4] };
+        Answer { command, telemetry: None, outputs }
     }
 
     /// Counts a step, and says whether it is one of every `TLM_EVERY`.
