@@ -66,31 +66,38 @@ impl<T: Real> Actuation<T> for ActuatorLimits<T> {
 
 /// Longest latency the actuators' model can hold, in control periods.
 pub const MAX_DELAY: usize = 31;
+/// A power of two, so that a count that wraps keeps its place.
+const SLOTS: usize = MAX_DELAY + 1;
 
 /// A delay line of whole periods, then a first-order lag: what the commands do on their way to thrust and torque.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Actuators<T> {
-    /// The last commands; `newest` is where the last one stands.
-    line: [Command<T>; MAX_DELAY + 1],
+    /// A ring of the last commands; `newest` counts them, and the last one stands there.
+    line: [Command<T>; SLOTS],
     newest: usize,
     delay: usize,
+    /// Commands sent since the reset that do not act yet.
+    waiting: usize,
     /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
     decay: T,
+    /// 1 without lag, where a command acts at once; 0 with one.
+    jump: T,
     /// Share of the newest command in the mean over the law's look ahead.
     share: T,
     /// What acts up to this sample, and by how much that stepped at the last one.
     applied: Command<T>,
     step: Command<T>,
+    drift: Command<T>,
 }
 
 impl<T: Real> Actuators<T> {
     /// With `latency` (rounded to whole periods) and `lag`, s; the law looks `horizon` s ahead.
     pub(crate) fn new(period: T, latency: T, lag: T, horizon: T, command: Command<T>) -> Result<Self, OutOfRange<T>> {
         let periods = latency / period + T::lit(0.5);
-        OutOfRange::check("latency in periods", periods, 0.0, (MAX_DELAY + 1) as f64 - 1e-3)?;
+        OutOfRange::check("latency in periods", periods, 0.0, SLOTS as f64 - 1e-3)?;
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
         let has_lag = lag > T::zero();
-        let decay = if has_lag { (-period / lag).exp() } else { T::zero() };
+        let (decay, jump) = if has_lag { ((-period / lag).exp(), T::zero()) } else { (T::zero(), T::one()) };
         // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then the line's commands pass from
         // the applied to the newest.
         let acting = horizon - latency;
@@ -98,15 +105,30 @@ impl<T: Real> Actuators<T> {
         let share =
             if delay > 0 || has_lag { (acting - settled + latency * T::lit(0.5)) / horizon } else { T::zero() };
         let share = if horizon > T::zero() { share } else { T::zero() };
-        let line = [command; MAX_DELAY + 1];
-        Ok(Self { line, newest: 0, delay, decay, share, applied: command, step: Command::zero() })
+        let line = [command; SLOTS];
+        Ok(Self {
+            line,
+            newest: 0,
+            delay,
+            waiting: 0,
+            decay,
+            jump,
+            share,
+            applied: command,
+            step: Command::zero(),
+            drift: Command::zero(),
+        })
     }
 
     /// `command` has been on for long.
     pub(crate) fn reset(&mut self, command: Command<T>) {
-        self.line = [command; MAX_DELAY + 1];
+        if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
+            *slot = command;
+        }
+        self.waiting = 0;
         self.applied = command;
         self.step = Command::zero();
+        self.drift = Command::zero();
     }
 
     /// What acts up to this sample.
@@ -121,34 +143,35 @@ impl<T: Real> Actuators<T> {
         &self.step
     }
 
-    /// The last command sent.
+    /// The command sent `before` the last one.
     #[inline]
-    pub(crate) fn newest(&self) -> &Command<T> {
-        self.line.get(self.newest).unwrap_or(&self.applied)
+    pub(crate) fn sent(&self, before: usize) -> Command<T> {
+        self.line.get(self.newest.wrapping_sub(before) % SLOTS).copied().unwrap_or(self.applied)
     }
 
-    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is known before the coming command;
-    /// `None` without latency and lag.
+    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is known before the coming command:
+    /// nothing without latency and lag.
     #[inline]
-    pub(crate) fn drift(&self) -> Option<Command<T>> {
-        (self.share > T::zero()).then(|| self.newest().minus(&self.applied).times(self.share))
+    pub(crate) fn drift(&self) -> &Command<T> {
+        &self.drift
     }
 
     /// Sends the command for the coming hold.
     #[inline]
     pub(crate) fn push(&mut self, command: Command<T>) {
-        self.newest = (self.newest + 1) % (MAX_DELAY + 1);
-        if let Some(slot) = self.line.get_mut(self.newest) {
+        self.newest = self.newest.wrapping_add(1);
+        if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
             *slot = command;
         }
-        let acting = (self.newest + MAX_DELAY + 1 - self.delay) % (MAX_DELAY + 1);
-        let delayed = self.line.get(acting).copied().unwrap_or(command);
-        let step = delayed.minus(&self.applied);
-        if self.decay > T::zero() {
-            self.applied = delayed.minus(&step.times(self.decay));
+        let delayed = if self.waiting < self.delay {
+            self.waiting += 1;
+            self.applied
         } else {
-            self.step = step;
-            self.applied = delayed;
-        }
+            self.sent(self.delay)
+        };
+        let step = delayed.minus(&self.applied);
+        self.applied = delayed.minus(&step.times(self.decay));
+        self.step = step.times(self.jump);
+        self.drift = command.minus(&self.applied).times(self.share);
     }
 }

@@ -22,7 +22,6 @@
 use nalgebra::Vector3;
 
 use crate::error::OutOfRange;
-use crate::model::Acceleration;
 use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -187,9 +186,18 @@ impl<T: Real> Channel<T> {
         innovation
     }
 
-    /// Corrects a force and its `rate` by the innovation, and moves it on by a `period`.
+    /// [Corrects](Self::correct) the velocity, a force and its `rate`, and moves the force on by a `period`.
     #[inline]
-    fn grow(&self, innovation: &Vector3<T>, disturbance: &mut Vector3<T>, rate: &mut Vector3<T>, period: T) {
+    fn grow(
+        &mut self,
+        measured: &Vector3<T>,
+        right: &Vector3<T>,
+        left: &Vector3<T>,
+        period: T,
+        disturbance: &mut Vector3<T>,
+        rate: &mut Vector3<T>,
+    ) {
+        let innovation = self.correct(measured, right, left, period * T::lit(0.5));
         let found = *rate + innovation * self.rate_gain;
         let is_taken = self.take(innovation * self.disturbance_gain + found * period, disturbance);
         *rate = if is_taken { found } else { Vector3::zeros() };
@@ -239,6 +247,7 @@ impl<T: Real> Observer<T> {
 
     /// Starts from `state`, with the estimates as they are. The half period's acceleration that this leaves out is gone within the
     /// observers' time, and below a hundredth of an m/s².
+    #[inline(never)]
     pub(crate) fn restart(&mut self, state: &State<T>) {
         self.payload.predicted = state.velocity;
         self.rod.predicted = state.rod_rate;
@@ -250,22 +259,31 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Corrects the estimates by the sampled `state`: `right` are the model's accelerations that end the last period, `left` those that
-    /// begin the next.
+    /// Corrects d̂ by the sampled payload's `velocity`: `right` is the model's acceleration that ends the last period, `left` the one that begins the
+    /// next.
     ///
     /// Thrust and torque step between periods, and the model is affine in them: the step at the last sample, which `left` of then could
-    /// not know, is made good by `right`.
+    /// not know, is made good by `right`. So it is with δ̂ and τ̂_d.
     #[inline]
-    pub(crate) fn correct(&mut self, state: &State<T>, right: &Acceleration<T>, left: &Acceleration<T>) {
-        let half_period = self.period * T::lit(0.5);
-        let Disturbance { payload, rod, torque, payload_rate, rod_rate } = &mut self.estimate;
-        let missed = self.payload.correct(&state.velocity, &right.payload, &left.payload, half_period);
-        self.payload.grow(&missed, payload, payload_rate, self.period);
-        let missed = self.rod.correct(&state.rod_rate, &right.rod, &left.rod, half_period);
-        self.rod.grow(&missed, rod, rod_rate, self.period);
-        *rod -= state.rod * state.rod.dot(rod);
-        *rod_rate -= state.rod * state.rod.dot(rod_rate);
-        let missed = self.body.correct(&state.body_rate, &right.body, &left.body, half_period);
-        self.body.take(missed.component_mul(&self.inertia) * self.body.disturbance_gain, torque);
+    pub(crate) fn correct_payload(&mut self, velocity: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
+        let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
+        self.payload.grow(velocity, right, left, self.period, payload, payload_rate);
+    }
+
+    /// Corrects δ̂ by the sampled `rod` and its `rate`.
+    #[inline]
+    pub(crate) fn correct_rod(&mut self, rod: &Vector3<T>, rate: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
+        let Disturbance { rod: delta, rod_rate: delta_1, .. } = &mut self.estimate;
+        self.rod.grow(rate, right, left, self.period, delta, delta_1);
+        *delta -= rod * rod.dot(delta);
+        *delta_1 -= rod * rod.dot(delta_1);
+    }
+
+    /// Corrects τ̂_d by the sampled `body_rate`.
+    #[inline]
+    pub(crate) fn correct_body(&mut self, body_rate: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
+        let missed = self.body.correct(body_rate, right, left, self.period * T::lit(0.5));
+        let correction = missed.component_mul(&self.inertia) * self.body.disturbance_gain;
+        self.body.take(correction, &mut self.estimate.torque);
     }
 }

@@ -20,22 +20,27 @@ pub struct Acceleration<T> {
     pub body: Vector3<T>,
 }
 
-impl<T: Real> Acceleration<T> {
-    #[inline]
-    pub(crate) fn plus(&self, other: &Self) -> Self {
-        Self { payload: self.payload + other.payload, rod: self.rod + other.rod, body: self.body + other.body }
-    }
+/// λ, the payload's specific force along the rod of `state` under `thrust` (N), without d, m/s²: −(|q̇|² + κ b3·q)/c.
+#[inline]
+pub fn lambda<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, thrust: T) -> T {
+    let b3: Vector3<T> = state.attitude.column(2).into();
+    let turning = state.rod_rate.dot(&state.rod_rate);
+    -(turning + thrust * vehicle.kappa_per_thrust * b3.dot(&state.rod)) * vehicle.inverse_coupling
 }
 
-/// The model at one state, ready for any command.
+/// The model at one state. Accelerations are affine in the command: with λ = −(|q̇|² + κ b3·q)/c and κ = T/(m_Q L)
+///
+/// ```text
+/// v̇ = g e3 + d − (|q̇|²/c) q − (b3·q) q T/M,   q̈ = δ − |q̇|² q + (b3 − (b3·q) q) T/(m_Q L),   ω̇ = J⁻¹ (J ω × ω + τ_d + τ)
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a, T> {
     vehicle: &'a Vehicle<T>,
     state: &'a State<T>,
-    b3: Vector3<T>,
-    b3_rod: T,
-    rod_speed_squared: T,
-    gyroscopic: Vector3<T>,
+    /// b3·q.
+    along: T,
+    /// |q̇|².
+    turning: T,
 }
 
 impl<'a, T: Real> Model<'a, T> {
@@ -43,93 +48,80 @@ impl<'a, T: Real> Model<'a, T> {
     #[inline]
     pub fn at(vehicle: &'a Vehicle<T>, state: &'a State<T>) -> Self {
         let b3: Vector3<T> = state.attitude.column(2).into();
-        let omega = &state.body_rate;
-        Self {
-            vehicle,
-            state,
-            b3,
-            b3_rod: b3.dot(&state.rod),
-            rod_speed_squared: state.rod_rate.dot(&state.rod_rate),
-            gyroscopic: vehicle.inertia.component_mul(omega).cross(omega),
-        }
+        Self { vehicle, state, along: b3.dot(&state.rod), turning: state.rod_rate.dot(&state.rod_rate) }
     }
 
-    /// λ, the payload's specific force along the rod under `thrust` (N), without d, m/s².
+    /// v̇ under `thrust` (N) and d, and its change with a newton more.
     #[inline]
-    pub fn lambda(&self, thrust: T) -> T {
-        let kappa = thrust * self.vehicle.kappa_per_thrust;
-        -(self.rod_speed_squared + kappa * self.b3_rod) * self.vehicle.inverse_coupling
+    pub(crate) fn payload(&self, thrust: T, d: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        let (vehicle, q) = (self.vehicle, &self.state.rod);
+        let per_newton = q * -(self.along * vehicle.per_total_mass);
+        let mut acceleration = d - q * (self.turning * vehicle.inverse_coupling) + per_newton * thrust;
+        acceleration.z += vehicle.params().gravity;
+        (acceleration, per_newton)
     }
 
-    /// Accelerations under `command` and `disturbance`, whose δ is orthogonal to the rod.
+    /// q̈ under `thrust` (N) and δ, and its change with a newton more.
     #[inline]
+    pub(crate) fn rod(&self, thrust: T, delta: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        let q = &self.state.rod;
+        let b3: Vector3<T> = self.state.attitude.column(2).into();
+        let per_newton = (b3 - q * self.along) * self.vehicle.kappa_per_thrust;
+        (delta - q * self.turning + per_newton * thrust, per_newton)
+    }
+
+    /// ω̇ under `torque` and τ_d (N·m), and its change with a newton metre more about each axis.
+    #[inline]
+    pub(crate) fn body(&self, torque: &Vector3<T>, disturbing: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+        let (vehicle, omega) = (self.vehicle, &self.state.body_rate);
+        let sum = vehicle.inertia.component_mul(omega).cross(omega) + disturbing + torque;
+        (sum.component_mul(&vehicle.inverse_inertia), vehicle.inverse_inertia)
+    }
+
+    /// All of them under `command` and `disturbance`, whose δ is orthogonal to the rod.
     pub fn acceleration(&self, command: &Command<T>, disturbance: &Disturbance<T>) -> Acceleration<T> {
-        let vehicle = self.vehicle;
-        let q = &self.state.rod;
-        let lambda = self.lambda(command.thrust);
-        let mut payload = q * lambda + disturbance.payload;
-        payload.z += vehicle.params().gravity;
-        let torque = command.torque + disturbance.torque + self.gyroscopic;
         Acceleration {
-            payload,
-            rod: self.b3 * (command.thrust * vehicle.kappa_per_thrust)
-                + q * (vehicle.coupling * lambda)
-                + disturbance.rod,
-            body: torque.component_mul(&vehicle.inverse_inertia),
-        }
-    }
-
-    /// What `difference` more of a command adds to the accelerations, which are affine in it.
-    #[inline]
-    pub fn response(&self, difference: &Command<T>) -> Acceleration<T> {
-        let vehicle = self.vehicle;
-        let q = &self.state.rod;
-        let kappa = difference.thrust * vehicle.kappa_per_thrust;
-        let coupled = -(kappa * self.b3_rod);
-        Acceleration {
-            payload: q * (coupled * vehicle.inverse_coupling),
-            rod: self.b3 * kappa + q * coupled,
-            body: difference.torque.component_mul(&vehicle.inverse_inertia),
-        }
-    }
-
-    /// The state `dt` later at constant `acceleration`: second order in position, rod and attitude, and back on S² × SO(3) to
-    /// within the cube of the angles turned.
-    #[inline]
-    pub fn ahead(&self, acceleration: &Acceleration<T>, dt: T) -> State<T> {
-        let half_dt = dt * T::lit(0.5);
-        let State { position, velocity, rod, rod_rate, attitude, body_rate } = self.state;
-        let mut q = rod + (rod_rate + acceleration.rod * half_dt) * dt;
-        // One Newton step of 1/|q| about 1.
-        q *= T::lit(1.5) - T::lit(0.5) * q.dot(&q);
-        let w = rod_rate + acceleration.rod * dt;
-        State {
-            position: position + (velocity + acceleration.payload * half_dt) * dt,
-            velocity: velocity + acceleration.payload * dt,
-            rod: q,
-            rod_rate: w - q * q.dot(&w),
-            attitude: attitude * small_rotation(&((body_rate + acceleration.body * half_dt) * dt)),
-            body_rate: body_rate + acceleration.body * dt,
+            payload: self.payload(command.thrust, &disturbance.payload).0,
+            rod: self.rod(command.thrust, &disturbance.rod).0,
+            body: self.body(&command.torque, &disturbance.torque).0,
         }
     }
 }
 
-/// exp of the rotation vector `v` to second order: I + v^ + v^²/2, orthonormal to |v|⁴/4.
+/// A position and its rate `dt` later at constant `acceleration`.
 #[inline]
-fn small_rotation<T: Real>(v: &Vector3<T>) -> Matrix3<T> {
-    let half = T::lit(0.5);
-    let one = T::one();
-    let (xx, yy, zz) = (v.x * v.x * half, v.y * v.y * half, v.z * v.z * half);
-    let (xy, xz, yz) = (v.x * v.y * half, v.x * v.z * half, v.y * v.z * half);
-    Matrix3::new(
-        one - yy - zz,
-        xy - v.z,
-        xz + v.y,
-        xy + v.z,
-        one - xx - zz,
-        yz - v.x,
-        xz - v.y,
-        yz + v.x,
-        one - xx - yy,
-    )
+pub(crate) fn advance<T: Real>(
+    position: &Vector3<T>,
+    rate: &Vector3<T>,
+    acceleration: &Vector3<T>,
+    dt: T,
+) -> (Vector3<T>, Vector3<T>) {
+    let change = acceleration * dt;
+    (position + (rate + change * T::lit(0.5)) * dt, rate + change)
+}
+
+/// A rod's rate without what would make it longer.
+#[inline]
+pub(crate) fn across<T: Real>((q, w): (Vector3<T>, Vector3<T>)) -> (Vector3<T>, Vector3<T>) {
+    (q, w - q * q.dot(&w))
+}
+
+/// An attitude and its body rate `dt` later at constant `acceleration`, to within the square of the angle turned.
+#[inline]
+pub(crate) fn turn<T: Real>(
+    attitude: &Matrix3<T>,
+    body_rate: &Vector3<T>,
+    acceleration: &Vector3<T>,
+    dt: T,
+) -> (Matrix3<T>, Vector3<T>) {
+    let (angle, body_rate) = advance(&Vector3::zeros(), body_rate, acceleration, dt);
+    let b1: Vector3<T> = attitude.column(0).into();
+    let b2: Vector3<T> = attitude.column(1).into();
+    let b3: Vector3<T> = attitude.column(2).into();
+    let turned = Matrix3::from_columns(&[
+        b1 + b2 * angle.z - b3 * angle.y,
+        b2 + b3 * angle.x - b1 * angle.z,
+        b3 + b1 * angle.y - b2 * angle.x,
+    ]);
+    (turned, body_rate)
 }

@@ -12,7 +12,7 @@ use crate::compensator::{Command, continuing, propagate};
 use crate::disturbance::{Disturbance, Observer, ObserverParams};
 use crate::error::OutOfRange;
 use crate::lift::lift;
-use crate::model::Model;
+use crate::model::{Model, across, advance, turn};
 use crate::scalar::Real;
 use crate::state::State;
 use crate::vehicle::Vehicle;
@@ -74,8 +74,10 @@ pub struct Sampler<T, A = ActuatorLimits<T>> {
     /// prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
-    /// What is left of the command's step at a take-over; `None` until the first command shows the step.
-    bump: Option<Command<T>>,
+    /// The next command's step against what is being applied is to fade.
+    is_softening: bool,
+    /// What is left of such a step.
+    bump: Command<T>,
     /// What a period leaves of it.
     fade: T,
     actuation: A,
@@ -99,7 +101,8 @@ impl<T: Real> Sampler<T> {
             horizon,
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
-            bump: Some(Command::zero()),
+            is_softening: false,
+            bump: Command::zero(),
             fade: (-period / T::lit(TAKE_OVER)).exp(),
             actuation: ActuatorLimits::none(),
             is_saturated: false,
@@ -120,6 +123,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
             horizon,
             zeta,
             u_zeta,
+            is_softening,
             bump,
             fade,
             is_saturated,
@@ -134,6 +138,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
             horizon,
             zeta,
             u_zeta,
+            is_softening,
             bump,
             fade,
             actuation,
@@ -160,31 +165,37 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         // At a singularity (9) says nothing, and what can't be applied was not.
         let thrust = if thrust.is_finite() { thrust } else { self.vehicle.hover_thrust() };
         let applied = self.actuation.apply(&Command { thrust, torque: Vector3::zeros() });
-        self.reset(state, zeta, applied);
+        self.reset(state, applied);
+        self.zeta = zeta;
+        self.u_zeta = T::zero();
+        self.is_softening = false;
+        self.bump = Command::zero();
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
     pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.reset(state, [T::zero(); 4], applied);
+        self.reset(state, applied);
         self.take_over(state);
     }
 
     /// Continues what is being applied, with the ζ that does. The first command's step against it fades.
+    #[inline(never)]
     pub(crate) fn take_over(&mut self, state: &State<T>) {
-        self.zeta = continuing(&self.vehicle, state, self.actuators.applied(), self.observer.estimate());
+        let thrust = self.actuators.applied().thrust;
+        self.zeta = continuing(&self.vehicle, state, thrust, self.observer.estimate());
         self.u_zeta = T::zero();
-        self.bump = None;
+        self.soften();
     }
 
     /// Has the next command's step against what is being applied fade.
     pub(crate) fn soften(&mut self) {
-        self.bump = None;
+        self.is_softening = true;
     }
 
     /// Lets a period pass without a usable state: the last command goes on.
     pub(crate) fn coast(&mut self) -> Command<T> {
         self.zeta = propagate(&self.zeta, self.u_zeta, self.period);
-        let last = *self.actuators.newest();
+        let last = self.actuators.sent(0);
         self.send(&last)
     }
 
@@ -215,10 +226,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.observer.restart(state);
     }
 
-    fn reset(&mut self, state: &State<T>, zeta: [T; 4], applied: Command<T>) {
-        self.zeta = zeta;
-        self.u_zeta = T::zero();
-        self.bump = Some(Command::zero());
+    fn reset(&mut self, state: &State<T>, applied: Command<T>) {
         self.actuators.reset(applied);
         self.observer.reset(state);
     }
@@ -226,15 +234,25 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
     #[inline]
     pub(crate) fn ahead(&mut self, sampled: &State<T>) -> Ahead<T> {
+        let (dt, observer, actuators) = (self.horizon, &mut self.observer, &self.actuators);
+        let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
+        let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
         let model = Model::at(&self.vehicle, sampled);
-        let acceleration = model.acceleration(self.actuators.applied(), self.observer.estimate());
-        let right = acceleration.plus(&model.response(self.actuators.step()));
-        self.observer.correct(sampled, &right, &acceleration);
-        let mean = match self.actuators.drift() {
-            Some(drift) => acceleration.plus(&model.response(&drift)),
-            None => acceleration,
-        };
-        let state = model.ahead(&mean, self.horizon);
+
+        let (left, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
+        observer.correct_payload(velocity, &(left + per_newton * step.thrust), &left);
+        let (position, velocity) = advance(position, velocity, &(left + per_newton * drift.thrust), dt);
+
+        let (left, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
+        observer.correct_rod(rod, rod_rate, &(left + per_newton * step.thrust), &left);
+        let (rod, rod_rate) = across(advance(rod, rod_rate, &(left + per_newton * drift.thrust), dt));
+
+        let (left, per_newton_metre) = model.body(&applied.torque, &observer.estimate().torque);
+        observer.correct_body(body_rate, &(left + per_newton_metre.component_mul(&step.torque)), &left);
+        let mean = left + per_newton_metre.component_mul(&drift.torque);
+        let (attitude, body_rate) = turn(attitude, body_rate, &mean, dt);
+
+        let state = State { position, velocity, rod, rod_rate, attitude, body_rate };
         Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold) }
     }
 
@@ -242,11 +260,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     ///
     /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference with `alignment` = (q·e3)(q·b3), so that the compensator stands for the motion
     /// that the applied thrust gives.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn hold(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
-        let bump = self.bump.unwrap_or_else(|| self.step_to(&command));
-        self.bump = Some(bump.times(self.fade));
-        let smooth = command.plus(&bump);
+        if self.is_softening {
+            self.is_softening = false;
+            self.bump = self.actuators.applied().minus(&command);
+        }
+        let smooth = command.plus(&self.bump);
+        self.bump = self.bump.times(self.fade);
         let applied = self.send(&smooth);
         self.is_saturated = applied.thrust != smooth.thrust;
         self.zeta = propagate(&self.zeta, u_zeta, self.period);
@@ -254,12 +275,6 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.zeta[0] += missing * alignment * self.vehicle.per_total_mass;
         self.u_zeta = u_zeta;
         applied
-    }
-
-    /// What is applied over what `command` would have applied.
-    #[cold]
-    fn step_to(&self, command: &Command<T>) -> Command<T> {
-        self.actuators.applied().minus(&self.actuation.apply(command))
     }
 
     /// ζ when the next command begins to act.

@@ -120,22 +120,26 @@ impl<T: Real> State<T> {
     /// rate within 100 rad/s, |q| and the attitude's columns within 1 % of 1, and those a right-handed frame. NaN is none of it.
     #[inline]
     pub fn check(&self) -> Result<(), Channel> {
-        let unit = |squared: T| squared >= T::lit(0.98) && squared <= T::lit(1.02);
-        let within = |v: &Vector3<T>, most: f64| v.dot(v) <= T::lit(most * most);
+        // How far off one is what should be, squared.
+        let off = |of_one: T| (of_one - T::one()) * (of_one - T::one());
+        let tolerance = T::lit(0.02 * 0.02);
+        let within = |v: &Vector3<T>, most: f64| is_within(v, T::lit(most * most));
         let b1: Vector3<T> = self.attitude.column(0).into();
         let b2: Vector3<T> = self.attitude.column(1).into();
         let b3: Vector3<T> = self.attitude.column(2).into();
         // Three vectors of length one span a volume of one only at right angles.
-        let frame = unit(b1.dot(&b1)) && unit(b2.dot(&b2)) && unit(b3.dot(&b3)) && unit(b1.cross(&b2).dot(&b3));
+        let off_frame = off(b1.dot(&b1)) + off(b2.dot(&b2)) + off(b3.dot(&b3)) + off(b1.cross(&b2).dot(&b3));
+        let is_unit = off(self.rod.dot(&self.rod)) <= tolerance;
+        let is_frame = off_frame <= tolerance;
         if !within(&self.position, 1e5) {
             Err(Channel::Position)
         } else if !within(&self.velocity, 1e3) {
             Err(Channel::Velocity)
-        } else if !unit(self.rod.dot(&self.rod)) {
+        } else if !is_unit {
             Err(Channel::Rod)
         } else if !within(&self.rod_rate, 1e2) {
             Err(Channel::RodRate)
-        } else if !frame {
+        } else if !is_frame {
             Err(Channel::Attitude)
         } else if !within(&self.body_rate, 1e2) {
             Err(Channel::BodyRate)
@@ -156,4 +160,10 @@ impl<T: Real> State<T> {
             body_rate: vector(&self.body_rate),
         }
     }
+}
+
+/// |v|² ≤ `squared`, which no NaN is.
+#[inline(never)]
+pub(crate) fn is_within<T: Real>(v: &Vector3<T>, squared: T) -> bool {
+    v.dot(v) <= squared
 }

@@ -41,7 +41,7 @@ use crate::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
 use crate::error::OutOfRange;
 use crate::follow::{Follower, Solution, Xi};
 use crate::hold::Hold;
-use crate::model::Model;
+use crate::model::lambda;
 use crate::path::Path;
 use crate::sampler::Ahead;
 use crate::scalar::Real;
@@ -332,7 +332,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         let margins = Margins {
             q3: sampled.rod.z,
             q_b3: b3.dot(&sampled.rod),
-            lambda: Model::at(vehicle, sampled).lambda(thrust),
+            lambda: lambda(vehicle, sampled, thrust),
             kappa: thrust * vehicle.kappa_per_thrust,
             path_det: T::one(),
             reach: T::one(),

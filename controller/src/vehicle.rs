@@ -47,6 +47,10 @@ pub struct Vehicle<T> {
     pub(crate) per_total_mass: T,
     /// 1/c.
     pub(crate) inverse_coupling: T,
+    /// M, kg.
+    total_mass: T,
+    /// M g, N.
+    hover_thrust: T,
     /// J, kg·m².
     pub(crate) inertia: Vector3<T>,
     /// J⁻¹.
@@ -74,6 +78,8 @@ impl<T: Real> Vehicle<T> {
             coupling: total / arm,
             per_total_mass: T::one() / total,
             inverse_coupling: arm / total,
+            total_mass: total,
+            hover_thrust: total * params.gravity,
             inertia: Vector3::from(params.inertia),
             inverse_inertia: Vector3::from(params.inertia.map(|j| T::one() / j)),
         })
@@ -86,11 +92,11 @@ impl<T: Real> Vehicle<T> {
 
     /// M = m_Q + m_L, kg.
     pub fn total_mass(&self) -> T {
-        self.params.uav_mass + self.params.payload_mass
+        self.total_mass
     }
 
     /// The thrust that balances gravity at rest, M g, N.
     pub fn hover_thrust(&self) -> T {
-        self.total_mass() * self.params.gravity
+        self.hover_thrust
     }
 }
