@@ -43,7 +43,7 @@ impl Moment {
     /// `dt` later, to second order, as the lift says.
     fn moved(&self, lift: &Lift<f64>, omega_dot: &Vector3<f64>, u_zeta: f64, dt: f64) -> Self {
         let (state, half) = (&self.state, 0.5 * dt * dt);
-        let [_, _, acceleration, jerk, ..] = &lift.derivatives;
+        let (acceleration, jerk) = (lift.derivative(2), lift.derivative(3));
         let mut disturbance = self.disturbance;
         disturbance.payload += disturbance.payload_rate * dt;
         disturbance.rod += disturbance.rod_rate * dt;
@@ -92,7 +92,7 @@ proptest! {
 
         let size = position_6.amax().max(1.0);
         let apart = |a: &Vector3<f64>, b: &Vector3<f64>| (a - b).amax() / size;
-        prop_assert!(apart(&model.payload, &here.derivatives[2]) < 1e-12);
+        prop_assert!(apart(&model.payload, &here.derivative(2)) < 1e-12);
         prop_assert!(apart(&model.rod, &here.rod_2) < 1e-12);
 
         let [before, after] =
@@ -100,12 +100,12 @@ proptest! {
         let (earlier, later) = (lifted(&before), lifted(&after));
         let rate = |a: &Vector3<f64>, b: &Vector3<f64>| (b - a) * (0.5 / STEP_S);
         for order in 2..5 {
-            let found = rate(&earlier.derivatives[order], &later.derivatives[order]);
-            prop_assert!(apart(&found, &here.derivatives[order + 1]) < BOUND, "order {order}: {found}");
+            let found = rate(&earlier.derivative(order), &later.derivative(order));
+            prop_assert!(apart(&found, &here.derivative(order + 1)) < BOUND, "order {order}: {found}");
         }
         prop_assert!(apart(&rate(&earlier.rod_2, &later.rod_2), &here.rod_3) < BOUND);
         prop_assert!(((later.kappa - earlier.kappa) * (0.5 / STEP_S) - here.kappa_dot).abs() / size < BOUND);
-        prop_assert!(apart(&rate(&earlier.derivatives[5], &later.derivatives[5]), &position_6) < BOUND);
+        prop_assert!(apart(&rate(&earlier.derivative(5), &later.derivative(5)), &position_6) < BOUND);
         let yaw_rate = |moment: &Moment| Yaw::of(&moment.state).rate;
         prop_assert!(((yaw_rate(&after) - yaw_rate(&before)) * (0.5 / STEP_S) - yaw_2).abs() / size < BOUND);
     }

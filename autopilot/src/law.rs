@@ -114,12 +114,12 @@ impl Law {
     pub fn step(&mut self, state: &State<f32>, request: Request, phase: f32) -> Step {
         match self {
             Self::Follow(supervisor) => {
-                let controller::Output { command, mode, fault, warning, solution } = supervisor.step(state, request);
+                let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
                 let follower = supervisor.follower();
                 let (zeta, actuators) = (follower.zeta(), follower.actuation());
-                let answer = solution.map(|solution| {
+                let answer = supervisor.solution().map(|solution| {
                     let xi: [&[f32]; 4] = [&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4];
-                    LawAnswer::new(&solution, xi, zeta, &command, actuators)
+                    LawAnswer::new(solution, xi, zeta, &command, actuators)
                 });
                 Step { command, mode, fault, warning, answer }
             }

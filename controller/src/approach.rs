@@ -9,13 +9,12 @@
 //!
 //! which starts where the payload is and as fast as it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives zero
 //! at either end, so the displacement asks for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is,
-//! go to the path's along with the slide. T_b and T are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt, rod angle and
-//! thrust, and the slide the one on speed. The displacement is rigid, so this works for any path, in metres, and meets no singularity of the curve's
+//! go to the path's along with the slide. T_b and T are times for which brake and slide, each, keep the limits on acceleration, tilt, rod angle and
+//! thrust, and the slide the one on speed: the shortest, but for a brake that snaps. The displacement is rigid, so this works for any path, in metres, and meets no singularity of the curve's
 //! functions on the way.
 
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
 use crate::error::OutOfRange;
 use crate::lift::PositionSeries;
 use crate::path::{Outputs, Path};
@@ -90,51 +89,33 @@ impl<T: Real> ApproachLimits<T> {
             .min(self.max_thrust * per_mass - gravity)
             .min(gravity - self.min_thrust * per_mass);
         let swing = params.uav_mass * per_mass * params.rod_length / gravity;
-        Ok(Pace { speed: self.speed, acceleration, snap: tilting / swing })
+        let snap = tilting / swing;
+        let [peak_1, peak_2, peak_3, peak_4] = PEAKS.map(T::lit);
+        let squared = |x: T| x * x;
+        Ok(Pace {
+            brake: [squared(peak_1 / acceleration), squared(peak_3 / (snap * T::lit(SHORTEST))), T::zero()],
+            slide: [squared(peak_1 / self.speed), squared(peak_2 / acceleration), squared(peak_4 / snap)],
+        })
     }
 }
 
 /// How fast the payload may be moved by an approach: [`ApproachLimits::pace`].
+///
+/// The time T for a motion of size x (a speed to lose, a distance to go) has T² ≥ a x², T⁴ ≥ b x² and T⁸ ≥ c x².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace<T> {
-    /// m/s.
-    speed: T,
-    /// m/s².
-    acceleration: T,
-    /// m/s⁴.
-    snap: T,
+    /// a, b, c of the brake: by acceleration, and by snap, of whose three factors T one is taken for [`SHORTEST`].
+    brake: [T; 3],
+    /// a, b, c of the slide: by speed, acceleration and snap.
+    slide: [T; 3],
 }
 
-impl<T: Real> Pace<T> {
-    /// The shortest time, s, to brake from `speed`.
-    fn braking(&self, speed: T) -> T {
-        let [peak_1, _, peak_3, _] = PEAKS.map(T::lit);
-        (peak_1 * speed / self.acceleration).max(cube_root(peak_3 * speed / self.snap))
-    }
-
-    /// The shortest time, s, to slide over `distance`.
-    fn sliding(&self, distance: T) -> T {
-        let [peak_1, peak_2, _, peak_4] = PEAKS.map(T::lit);
-        (peak_1 * distance / self.speed)
-            .max((peak_2 * distance / self.acceleration).sqrt())
-            .max((peak_4 * distance / self.snap).sqrt().sqrt())
-    }
-}
-
-/// x^(1/3), or 1 for less: Newton's steps from 1 + √x come down to it from above, by a third each at first, until rounding ends the descent: fewer than
-/// 50 of them for any f32, once an approach.
-fn cube_root<T: Real>(x: T) -> T {
-    let third = T::lit(1.0 / 3.0);
-    let x = x.max(T::one());
-    let mut root = T::one() + x.sqrt();
-    loop {
-        let next = root - (root - x / (root * root)) * third;
-        if next < root {
-            root = next;
-        } else {
-            return root;
-        }
-    }
+/// The time T, s, for a motion of size |`x`|, at least [`SHORTEST`].
+#[inline(never)]
+fn duration<T: Real>([a, b, c]: &[T; 3], x: &Vector3<T>) -> T {
+    let squared = x.dot(x);
+    let fourth = (*b * squared).max((*c * squared).sqrt());
+    T::lit(SHORTEST * SHORTEST).max(*a * squared).max(fourth.sqrt()).sqrt()
 }
 
 /// A slide under way, or none.
@@ -146,7 +127,7 @@ pub struct Approach<T> {
     velocity: Vector3<T>,
     /// (∇h1 × ∇h2)·ρ at p₀.
     path_det: T,
-    /// v_d − 0 and ψ − ψ_d at engagement.
+    /// 0 − v_d and ψ_d − ψ at engagement.
     speed: T,
     yaw: T,
     elapsed: T,
@@ -174,34 +155,28 @@ impl<T: Real> Approach<T> {
     /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
     pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
         path.engage(position);
-        let outputs = at_rest(path, position);
-        Self { path_det: determinant(&outputs), ..Self::none() }
+        Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
     }
 
-    /// From `state`. `None` if no point of the path is found: the search is Newton's on h1 = h2 = 0 with steps of least length, at most 50
-    /// of them.
-    pub(crate) fn start<P: Path<T> + ?Sized>(path: &mut P, pace: &Pace<T>, state: &State<T>) -> Option<Self> {
+    /// Begins at `state`. `false`, and nothing changed, if no point of the path is found.
+    pub(crate) fn begin<P: Path<T> + ?Sized>(&mut self, path: &mut P, pace: &Pace<T>, state: &State<T>) -> bool {
         let State { position, velocity, .. } = state;
         path.engage(position);
-        let nearest = nearest_point(path, position)?;
-        path.engage(&nearest);
-        let outputs = at_rest(path, &nearest);
-        let shortest = T::lit(SHORTEST);
-        let braking = pace.braking(length(velocity)).max(shortest);
-        let displacement = position - nearest + velocity * (braking * T::lit(0.5));
-        let sliding = pace.sliding(length(&displacement)).max(shortest);
-        Some(Self {
-            displacement,
-            velocity: *velocity,
-            path_det: determinant(&outputs),
-            speed: outputs.speed_error.value(),
-            yaw: (Yaw::of(state).angle - outputs.yaw.value()).wrap_angle(),
-            elapsed: T::zero(),
-            sliding,
-            braking,
-        })
+        let Some(Nearest { point, outputs, path_det }) = nearest(path, position) else {
+            return false;
+        };
+        self.elapsed = T::zero();
+        self.path_det = path_det;
+        self.speed = outputs.speed_error.value();
+        self.yaw = (outputs.yaw.value() - Yaw::of(state).angle).wrap_angle();
+        self.braking = duration(&pace.brake, velocity);
+        self.velocity = *velocity;
+        self.displacement = position - point + velocity * (self.braking * T::lit(0.5));
+        self.sliding = duration(&pace.slide, &self.displacement);
+        true
     }
 
+    #[inline]
     fn duration(&self) -> T {
         self.braking + self.sliding
     }
@@ -229,122 +204,124 @@ impl<T: Real> Approach<T> {
         }
     }
 
-    /// S of the slide and E of the brake, about `elapsed` s.
-    #[inline]
-    fn profiles(&self, elapsed: T) -> (Series<T, 7>, Series<T, 7>) {
-        let (slide, _) = profile(elapsed - self.braking, self.sliding);
-        let (brake, area) = profile(elapsed, self.braking);
-        // E: its derivative is the brake's S.
-        let Series([b0, b1, b2, b3, b4, b5, _]) = brake;
-        let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
-        (slide, Series([-area, b0, b1 * c2, b2 * c3, b3 * c4, b4 * c5, b5 * c6]))
+    /// Takes the displacement of `ahead` s from now out of `position`, if a slide is under way then, and returns what speed and yaw need for theirs.
+    #[inline(always)]
+    pub(crate) fn leave(&self, ahead: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
+        let elapsed = self.elapsed + ahead;
+        (elapsed < self.duration()).then(|| self.slide(elapsed, position))
     }
 
-    /// `path` as displaced `ahead` s from now.
-    #[inline]
-    pub(crate) fn displace<'a, P: ?Sized>(&'a self, path: &'a mut P, ahead: T) -> Displaced<'a, T, P> {
-        Displaced { path, approach: self, elapsed: self.elapsed + ahead }
+    // Apart: a step on the path does without it.
+    #[inline(never)]
+    fn slide(&self, elapsed: T, position: &mut PositionSeries<T>) -> Fading<T> {
+        let is_braking = elapsed < self.braking;
+        let (since, duration) =
+            if is_braking { (elapsed, self.braking) } else { (elapsed - self.braking, self.sliding) };
+        let (mut s, area) = profile(since, duration);
+        if is_braking {
+            let e: Series<T, 7> = s.truncate::<6>().integrate(-area);
+            displace(position, &e, &self.velocity);
+            // The slide's own has yet to begin; and from then on E is 0.
+            s = Series::constant(T::one());
+        }
+        displace(position, &s, &self.displacement);
+        Fading(s)
+    }
+
+    /// Brings speed and yaw to where they are while the displacement is.
+    pub(crate) fn fade(&self, fading: &Fading<T>, outputs: &mut Outputs<T>) {
+        outputs.speed_error.subtract(&fading.0, self.speed);
+        outputs.yaw.subtract(&fading.0, self.yaw);
     }
 }
 
-/// S(t/`duration`) about t = `elapsed` as a series in time, and ∫S from t to `duration`. S is 1 before and 0 after.
-#[inline]
+/// Takes `series` times `along` away.
+#[inline(never)]
+fn displace<T: Real>(position: &mut PositionSeries<T>, series: &Series<T, 7>, along: &Vector3<T>) {
+    for (coordinate, &along) in position.iter_mut().zip(along) {
+        coordinate.subtract(series, along);
+    }
+}
+
+/// S of the slide, from 1 to 0.
+pub(crate) struct Fading<T>(Series<T, 7>);
+
+/// S(t/`duration`) about t = `elapsed`, from 0 to `duration`, as a series in time, and ∫S from t to `duration`.
+#[inline(never)]
 fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
-    let zero = T::zero();
+    // The recurrence divides by x (1 − x); so near an end all derivatives are next to nothing, and what is left out less.
+    const END: f64 = 1e-6;
     let half = T::lit(0.5);
     let rate = T::one() / duration;
-    let x = (elapsed * rate).clamp(T::zero(), T::one());
+    let x = (elapsed * rate).clamp(T::lit(END), T::lit(1.0 - END));
     let y = T::one() - x;
     let xy = x * y;
-    // The slope by the power of a quadratic, the value by the finite sum of I_y(7, 7) = y⁷ Σ_{j<7} C(6 + j, j) xʲ.
-    let quadratic = Series([xy, (y - x) * rate, -(rate * rate), zero, zero, zero]);
-    let sixth = (quadratic.square() * quadratic).square();
-    let Series([s0, s1, s2, s3, s4, s5]) = sixth * (T::lit(-12012.0) * rate);
-    let sum = [924.0, 462.0, 210.0, 84.0, 28.0, 7.0, 1.0].iter().fold(zero, |sum, &c| sum * x + T::lit(c));
-    let y2 = y * y;
-    let value = y2 * y2 * y2 * y * sum;
-    let area = ((y - half) * value + T::lit(858.0) * sixth.value() * xy) * duration;
-    let [c2, c3, c4, c5, c6] = [2.0, 3.0, 4.0, 5.0, 6.0].map(|n| T::lit(1.0 / n));
-    (Series([value, s0, s1 * c2, s2 * c3, s3 * c4, s4 * c5, s5 * c6]), area)
-}
+    let cube = xy * xy * xy;
+    let sixth = cube * cube;
 
-#[inline]
-fn length<T: Real>(v: &Vector3<T>) -> T {
-    v.dot(v).sqrt()
-}
-
-/// A path displaced by a slide.
-pub(crate) struct Displaced<'a, T, P: ?Sized> {
-    path: &'a mut P,
-    approach: &'a Approach<T>,
-    elapsed: T,
-}
-
-impl<T: Real, P: Path<T> + ?Sized> Path<T> for Displaced<'_, T, P> {
-    #[inline(always)]
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
-        let Approach { displacement, velocity, speed, yaw, braking, sliding, .. } = self.approach;
-        let under_way = self.elapsed < *braking + *sliding;
-        let mut home = *position;
-        let mut fading = Series::constant(T::zero());
-        if under_way {
-            let (slide, brake) = self.approach.profiles(self.elapsed);
-            for ((coordinate, &d), &v) in home.iter_mut().zip(displacement).zip(velocity) {
-                *coordinate = *coordinate - slide * d - brake * v;
-            }
-            fading = slide;
-        }
-        let mut outputs = self.path.outputs(&home);
-        if under_way {
-            outputs.speed_error = outputs.speed_error - fading.truncate() * *speed;
-            outputs.yaw += fading.truncate() * *yaw;
-        }
-        outputs
+    // The slope f = −12012 (x y)⁶ has x y f′ = 6 (x y)′ f; x y is a quadratic of time, so each coefficient follows from the two before.
+    let per_xy = T::one() / xy;
+    let first = (y - x) * rate * per_xy;
+    let second = -(rate * rate) * per_xy;
+    let (mut before, mut last) = (T::zero(), sixth * (T::lit(-12012.0) * rate));
+    let mut s = [last; 7];
+    for (s, [by_first, by_second]) in s.iter_mut().skip(2).zip(RECURRENCE) {
+        *s = T::lit(by_first) * first * last + T::lit(by_second) * second * before;
+        (before, last) = (last, *s);
     }
+
+    // The value by the finite sum of I_y(7, 7) = y⁷ Σ_{j<7} C(6 + j, j) xʲ.
+    let sum = [924.0, 462.0, 210.0, 84.0, 28.0, 7.0, 1.0].iter().fold(T::zero(), |sum, &c| sum * x + T::lit(c));
+    let y2 = y * y;
+    let [value, ..] = &mut s;
+    *value = y2 * y2 * y2 * y * sum;
+    let area = ((y - half) * *value + T::lit(858.0) * sixth * xy) * duration;
+    (Series(s), area)
 }
 
-/// The outputs for a payload at rest. Apart from the law's own evaluation, which is inlined into the step.
-#[inline(never)]
-fn at_rest<T: Real, P: Path<T> + ?Sized>(path: &mut P, point: &Vector3<T>) -> Outputs<T> {
-    path.outputs(&[point.x, point.y, point.z].map(Series::constant))
+/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: what of the coefficients before and before that makes S's k-th.
+const RECURRENCE: [[f64; 2]; 5] =
+    [[3.0, 0.0], [5.0 / 3.0, 2.0], [1.0, 11.0 / 6.0], [3.0 / 5.0, 3.0 / 2.0], [1.0 / 3.0, 6.0 / 5.0]];
+
+/// A payload at rest at `point`.
+fn at_rest<T: Real>(point: &Vector3<T>) -> PositionSeries<T> {
+    [point.x, point.y, point.z].map(Series::constant)
 }
 
-/// (∇h1 × ∇h2)·ρ.
-fn determinant<T: Real>(outputs: &Outputs<T>) -> T {
-    let [g1, g2] = &outputs.gradients;
-    g1.cross(g2).dot(&outputs.tangent)
+/// A point of a path.
+struct Nearest<T> {
+    point: Vector3<T>,
+    /// The outputs there, for a payload at rest.
+    outputs: Outputs<T>,
+    /// (∇h1 × ∇h2)·ρ.
+    path_det: T,
 }
 
-/// A point of the path near `position`.
-fn nearest_point<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Option<Vector3<T>> {
+/// A point of the path near `position`: Newton's search on h1 = h2 = 0, across the tangent, with at most 50 steps.
+fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Option<Nearest<T>> {
     const STEPS: usize = 50;
     // A step longer than this is cut: far from the curve its functions may be strongly curved.
     let longest = T::lit(5.0);
     // On the curve to within what f32 resolves at a hundred metres.
     let close = T::lit(1e-4);
-    let mut point = *position;
-    for taken in 0..STEPS {
-        let outputs = at_rest(path, &point);
-        let [h1, h2] = outputs.surfaces.map(|h| h.value());
-        let [g1, g2] = &outputs.gradients;
-        let (a, b, c) = (g1.dot(g1), g1.dot(g2), g2.dot(g2));
-        let determinant = a * c - b * b;
-        let mut step = (g1 * (c * h1 - b * h2) + g2 * (a * h2 - b * h1)) / determinant;
-        let length = step.dot(&step).sqrt();
-        if !length.is_finite() {
-            if taken > 0 {
-                return None;
-            }
-            // Where the functions are stationary, as at a circle's centre, any direction is as good as another.
-            point += Vector3::repeat(T::lit(0.1));
-            continue;
+    let mut at = at_rest(position);
+    for _ in 0..STEPS {
+        let outputs = path.outputs(&at);
+        let [h1, h2] = &outputs.surfaces;
+        let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);
+        let squared = step.dot(&step);
+        // Where the functions are stationary, as at a circle's centre, any direction is as good as another.
+        let step = if squared.is_finite() {
+            step * (longest / squared.max(longest * longest).sqrt())
+        } else {
+            Vector3::repeat(T::lit(0.1))
+        };
+        for (coordinate, &step) in at.iter_mut().zip(&step) {
+            *coordinate = *coordinate - step;
         }
-        if length > longest {
-            step *= longest / length;
-        }
-        point -= step;
-        if length < close {
-            return Some(point);
+        if squared < close * close {
+            let [x, y, z] = &at;
+            return Some(Nearest { point: Vector3::new(x.value(), y.value(), z.value()), outputs, path_det });
         }
     }
     None
@@ -357,15 +334,17 @@ mod tests {
 
     #[test]
     fn profile_falls_from_one_to_zero_with_six_flat_derivatives() {
+        // Of a slide of 4 s. Its ends are taken a millionth of it inside, where S has hardly begun: 1716 (1e-6)⁷ from its end.
         for (elapsed, value) in [(0.0, 1.0), (2.0, 0.5), (4.0, 0.0), (5.0, 0.0)] {
             let (profile, area) = profile(elapsed, 4.0_f64);
             assert!((profile.value() - value).abs() < 1e-12, "{elapsed}");
-            assert!(elapsed > 0.0 || (area - 2.0).abs() < 1e-12, "{area}");
-            assert!(elapsed < 4.0 || area == 0.0, "{area}");
+            assert!(elapsed > 0.0 || (area - 2.0).abs() < 5e-6, "{area}");
+            assert!(elapsed < 4.0 || area.abs() < 1e-12, "{area}");
         }
+        // The last of them is next to zero rather than zero, by 12012 · 6! · 1e-6 as |S⁽⁶⁾| has peaks of 2e5, all over 4⁶.
         for elapsed in [0.0, 4.0, 5.0] {
             for k in 1..=6 {
-                assert!(profile(elapsed, 4.0_f64).0.derivative(k).abs() < 1e-12, "{elapsed} {k}");
+                assert!(profile(elapsed, 4.0_f64).0.derivative(k).abs() < 3e-3, "{elapsed} {k}");
             }
         }
     }
@@ -399,25 +378,27 @@ mod tests {
     }
 
     #[test]
-    fn cube_roots_are_reached_from_above() {
-        for x in [0.0, 0.5, 1.0, 27.0, 55.0, 1e3, 1e6, 1e30] {
-            let (root, exact): (f64, f64) = (cube_root(x), libm::cbrt(x.max(1.0)));
-            assert!((root / exact - 1.0).abs() < 1e-15, "{x}: {root}");
-        }
-    }
-
-    #[test]
     fn durations_keep_speed_and_acceleration() {
         let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
         let limits = ApproachLimits::gentle(&vehicle);
         let pace = limits.pace(&vehicle).unwrap();
+        let snap = largest_snap(&vehicle, &limits);
         for size in [0.1, 1.0, 20.0, 50.0] {
-            let sliding = pace.sliding(size);
-            let braking = pace.braking(size);
+            let along = Vector3::new(0.0, 0.6 * size, 0.8 * size);
+            let (sliding, braking) = (duration(&pace.slide, &along), duration(&pace.brake, &along));
             let slack = 1.0 + 1e-12;
             assert!(PEAKS[0] * size / sliding <= limits.speed * slack);
             assert!(PEAKS[1] * size / sliding.powi(2) <= limits.acceleration * slack);
+            assert!(PEAKS[3] * size / sliding.powi(4) <= snap * slack);
             assert!(PEAKS[0] * size / braking <= limits.acceleration * slack);
+            assert!(PEAKS[2] * size / braking.powi(3) <= snap * slack);
         }
+    }
+
+    /// The largest snap: half of the acceleration that the tilt allows, g/(1 + cot), over the swing's (m_Q/M)(L/g).
+    fn largest_snap(vehicle: &Vehicle<f64>, limits: &ApproachLimits<f64>) -> f64 {
+        let params = vehicle.params();
+        let lean = 1.0 / (1.0 + 1.0 / libm::tan(limits.tilt));
+        0.5 * params.gravity * lean * vehicle.total_mass() * params.gravity / (params.uav_mass * params.rod_length)
     }
 }

@@ -5,7 +5,7 @@ use crate::scalar::Real;
 use crate::vehicle::Vehicle;
 
 /// The numbers the law divides by, as signed distances from zero: the paper's singularities, the path's and the yaw's.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margins<T> {
     /// q·e3, cos α cos β: 1 hanging straight down, 0 with the rod horizontal.
     pub q3: T,
@@ -101,19 +101,29 @@ pub enum Standing {
     Beyond(Margin),
 }
 
-/// A margin's thresholds as the law's own number has them.
+/// The margins in the order of [`Margins`].
+const MARGINS: [Margin; 7] = [
+    Margin::RodAngle,
+    Margin::ThrustAngle,
+    Margin::Tension,
+    Margin::Thrust,
+    Margin::Path,
+    Margin::Reach,
+    Margin::Yaw,
+];
+
+/// What of the way from a margin's limit to its warning is left: `per_band` · value − `offset`, 1 at the warning and 0 at the limit.
 #[derive(Clone, Copy, Debug)]
 struct Threshold<T> {
-    margin: Margin,
-    limit: T,
-    /// 1/(warning − limit).
     per_band: T,
+    offset: T,
 }
 
 impl<T: Real> Threshold<T> {
-    fn new(margin: Margin, warning: T, limit: T) -> Self {
+    fn new(warning: T, limit: T) -> Self {
         // Without a band between the two, a warning is hardly ever due.
-        Self { margin, limit, per_band: T::one() / (warning - limit).max(T::lit(1e-6)) }
+        let per_band = T::one() / (warning - limit).max(T::lit(1e-6));
+        Self { per_band, offset: per_band * limit }
     }
 }
 
@@ -133,10 +143,10 @@ impl<T: Real> Envelope<T> {
             let (_, limit) = band.limit.sin_cos();
             Ok((warning, limit))
         };
-        let least = |margin, field, band: &Band<T>, largest: T, unit: T| {
+        let least = |field, band: &Band<T>, largest: T, unit: T| {
             OutOfRange::within(field, band.limit, T::zero(), largest)?;
             OutOfRange::within(field, band.warning, band.limit, largest)?;
-            Ok(Threshold::new(margin, band.warning * unit, band.limit * unit))
+            Ok(Threshold::new(band.warning * unit, band.limit * unit))
         };
         let one = T::one();
         let payload = vehicle.params().payload_mass;
@@ -146,19 +156,19 @@ impl<T: Real> Envelope<T> {
         let roll = cosines("roll", &params.roll)?;
         Ok(Self {
             thresholds: [
-                Threshold::new(Margin::RodAngle, rod.0, rod.1),
-                Threshold::new(Margin::ThrustAngle, thrust.0, thrust.1),
-                least(Margin::Tension, "tension", &params.tension, weight, one / payload)?,
-                least(Margin::Thrust, "thrust", &params.thrust, vehicle.hover_thrust(), vehicle.kappa_per_thrust)?,
-                least(Margin::Path, "path", &params.path, one, one)?,
-                least(Margin::Reach, "reach", &params.reach, one, one)?,
-                Threshold::new(Margin::Yaw, roll.0 * roll.0, roll.1 * roll.1),
+                Threshold::new(rod.0, rod.1),
+                Threshold::new(thrust.0, thrust.1),
+                least("tension", &params.tension, weight, one / payload)?,
+                least("thrust", &params.thrust, vehicle.hover_thrust(), vehicle.kappa_per_thrust)?,
+                least("path", &params.path, one, one)?,
+                least("reach", &params.reach, one, one)?,
+                Threshold::new(roll.0 * roll.0, roll.1 * roll.1),
             ],
         })
     }
 
     /// How `margins` stand by the least of them, with the determinant of the path's system as a share of `path_det`, its value on the path.
-    #[inline]
+    #[inline(never)]
     pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
         let values = [
             margins.q3,
@@ -169,12 +179,11 @@ impl<T: Real> Envelope<T> {
             margins.reach,
             margins.cos_phi_squared,
         ];
-        // 1 at the warning and 0 at the limit.
         let (mut least, mut margin) = (T::one(), Margin::RodAngle);
-        for (value, threshold) in values.into_iter().zip(&self.thresholds) {
-            let share = (value - threshold.limit) * threshold.per_band;
+        for ((value, threshold), of) in values.into_iter().zip(&self.thresholds).zip(MARGINS) {
+            let share = value * threshold.per_band - threshold.offset;
             if share < least {
-                (least, margin) = (share, threshold.margin);
+                (least, margin) = (share, of);
             }
         }
         if least >= T::one() {

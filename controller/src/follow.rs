@@ -3,8 +3,6 @@
 //! State, ζ → [lift](mod@crate::lift) → outputs along the [path](crate::path) → ν → one 3×3 system → [lower](mod@crate::lower) →
 //! u_ζ, τ. Relative degrees are {6, 6, 5, 2}: ξ has 19 numbers.
 
-use nalgebra::Vector3;
-
 use crate::actuator::{Actuation, ActuatorLimits};
 use crate::approach::{Approach, ApproachLimits, Pace};
 use crate::compensator::Command;
@@ -12,9 +10,9 @@ use crate::disturbance::{Disturbance, ObserverParams};
 use crate::envelope::Margins;
 use crate::error::OutOfRange;
 use crate::gains::{self, GainError};
-use crate::lift::lift;
+use crate::lift::{Lift, lift};
 use crate::lower::lower;
-use crate::path::Path;
+use crate::path::{Outputs, Path};
 use crate::sampler::{Ahead, Sampler, Sampling};
 use crate::scalar::Real;
 use crate::state::State;
@@ -47,7 +45,7 @@ impl<T: Real> Gains<T> {
 }
 
 /// The outputs and their derivatives (the normal form's coordinates), 19 numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Xi<T> {
     /// h1, …, h1⁽⁵⁾.
     pub h1: [T; 6],
@@ -75,8 +73,6 @@ pub struct Solution<T, X> {
 }
 
 /// Evaluates the law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance as they are, without looking ahead.
-// Inlined wherever it is called: its answer is then made in place, and the lift stays in registers.
-#[inline(always)]
 pub fn law<T: Real, P: Path<T> + ?Sized>(
     vehicle: &Vehicle<T>,
     path: &mut P,
@@ -87,44 +83,69 @@ pub fn law<T: Real, P: Path<T> + ?Sized>(
     disturbance: &Disturbance<T>,
 ) -> Solution<T, Xi<T>> {
     let lift = lift(vehicle, state, zeta, disturbance);
+    let outputs = path.outputs(&lift.position);
     let yaw = Yaw::of(state);
-    let outputs = path.outputs(&lift.position());
-    let [s1, s2] = &outputs.surfaces;
-    let s3 = &outputs.speed_error;
+    let mut solution = Solution::default();
+    solution.read(gains, integral, &yaw, &outputs);
+    solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
+    solution
+}
 
-    let xi = Xi {
-        h1: core::array::from_fn(|k| s1.derivative(k)),
-        h2: core::array::from_fn(|k| s2.derivative(k)),
-        h3: core::array::from_fn(|k| s3.derivative(k)),
-        h4: [(yaw.angle - outputs.yaw.value()).wrap_angle(), yaw.rate - outputs.yaw.derivative(1)],
-    };
-    let nu = [
-        -(dot(&gains.k1, &xi.h1) + gains.integral[0] * integral[0]),
-        -(dot(&gains.k2, &xi.h2) + gains.integral[1] * integral[1]),
-        -(dot(&gains.k3, &xi.h3) + gains.integral[2] * integral[2]),
-        -dot(&gains.k4, &xi.h4),
-    ];
+impl<T: Real, X: Default> Default for Solution<T, X> {
+    /// All zeros.
+    fn default() -> Self {
+        let (u_zeta, nu) = (T::zero(), [T::zero(); 4]);
+        Self { command: Command::zero(), u_zeta, xi: X::default(), nu, margins: Margins::default() }
+    }
+}
 
-    // (∇h1, ∇h2, ρ)ᵀ p⁽⁶⁾ = ν − b̄, solved by the rows' cross products.
-    let [g1, g2] = &outputs.gradients;
-    let rho = &outputs.tangent;
-    let c1 = g2.cross(rho);
-    let path_det = g1.dot(&c1);
-    let r1 = nu[0] - s1.derivative(6);
-    let r2 = nu[1] - s2.derivative(6);
-    let r3 = nu[2] - s3.derivative(5);
-    let position_6: Vector3<T> = (c1 * r1 + rho.cross(g1) * r2 + g1.cross(g2) * r3) * (T::one() / path_det);
+impl<T: Real, X> Solution<T, X> {
+    /// Neither command nor u_ζ is infinite or NaN.
+    #[inline]
+    pub(crate) fn is_finite(&self) -> bool {
+        let Command { thrust, torque } = &self.command;
+        (*thrust + torque.x + torque.y + torque.z + self.u_zeta).is_finite()
+    }
+}
 
-    let yaw_2 = nu[3] + outputs.yaw.derivative(2);
-    Solution {
-        command: Command {
-            thrust: lift.thrust(vehicle),
-            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2, &disturbance.torque),
-        },
-        u_zeta: position_6.z,
-        xi,
-        nu,
-        margins: Margins {
+impl<T: Real> Solution<T, Xi<T>> {
+    /// ξ and ν, from the path's outputs. Here and below each number is written where it stays, so that none is copied.
+    #[inline(always)]
+    fn read(&mut self, gains: &Gains<T>, integral: &[T; 3], yaw: &Yaw<T>, outputs: &Outputs<T>) {
+        let [s1, s2] = &outputs.surfaces;
+        let s3 = &outputs.speed_error;
+        self.xi.h1 = core::array::from_fn(|k| s1.derivative(k));
+        self.xi.h2 = core::array::from_fn(|k| s2.derivative(k));
+        self.xi.h3 = core::array::from_fn(|k| s3.derivative(k));
+        self.xi.h4 = [(yaw.angle - outputs.yaw.value()).wrap_angle(), yaw.rate - outputs.yaw.derivative(1)];
+        let xi = &self.xi;
+        self.nu = [
+            -(dot(&gains.k1, &xi.h1) + gains.integral[0] * integral[0]),
+            -(dot(&gains.k2, &xi.h2) + gains.integral[1] * integral[1]),
+            -(dot(&gains.k3, &xi.h3) + gains.integral[2] * integral[2]),
+            -dot(&gains.k4, &xi.h4),
+        ];
+    }
+
+    /// The command and u_ζ that give ν, and the margins.
+    #[inline(always)]
+    fn answer(
+        &mut self,
+        vehicle: &Vehicle<T>,
+        state: &State<T>,
+        disturbance: &Disturbance<T>,
+        lift: &Lift<T>,
+        yaw: &Yaw<T>,
+        outputs: &Outputs<T>,
+    ) {
+        // ν − b̄ is what p⁽⁶⁾ has to give.
+        let [s1, s2] = &outputs.surfaces;
+        let [nu1, nu2, nu3, nu4] = self.nu;
+        let (position_6, path_det) =
+            outputs.solve([nu1 - s1.derivative(6), nu2 - s2.derivative(6), nu3 - outputs.speed_error.derivative(5)]);
+        let yaw_2 = nu4 + outputs.yaw.derivative(2);
+        self.u_zeta = position_6.z;
+        self.margins = Margins {
             q3: state.rod.z,
             q_b3: lift.b3_rod,
             lambda: lift.lambda[0],
@@ -132,7 +153,9 @@ pub fn law<T: Real, P: Path<T> + ?Sized>(
             path_det,
             reach: outputs.reach_margin,
             cos_phi_squared: yaw.cos_phi_squared,
-        },
+        };
+        self.command.thrust = lift.thrust(vehicle);
+        self.command.torque = lower(vehicle, state, lift, yaw, &position_6, yaw_2, &disturbance.torque);
     }
 }
 
@@ -183,6 +206,8 @@ pub struct Follower<T, P, A = ActuatorLimits<T>> {
     path: P,
     gains: Gains<T>,
     integral: [T; 3],
+    /// The last answer, kept where it was made.
+    solution: Solution<T, Xi<T>>,
     /// Time since the thrust was limited, s.
     unsaturated: T,
     approach: Approach<T>,
@@ -206,6 +231,7 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
             path,
             gains,
             integral: [T::zero(); 3],
+            solution: Solution::default(),
             unsaturated: T::lit(RECOVERY),
             approach: Approach::none(),
             sampler,
@@ -221,8 +247,9 @@ impl<T: Real, P: Path<T>> Follower<T, P> {
 impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     /// With `actuation` in place of the one it has: [`Rotors`](crate::allocation::Rotors), say.
     pub fn with_actuation<B: Actuation<T>>(self, actuation: B) -> Result<Follower<T, P, B>, SetupError<T>> {
-        let Self { path, gains, integral, unsaturated, approach, sampler } = self;
-        Ok(Follower { path, gains, integral, unsaturated, approach, sampler: sampler.with_actuation(actuation)? })
+        let Self { path, gains, integral, solution, unsaturated, approach, sampler } = self;
+        let sampler = sampler.with_actuation(actuation)?;
+        Ok(Follower { path, gains, integral, solution, unsaturated, approach, sampler })
     }
 
     /// Changes what the actuators can apply, in flight too.
@@ -247,8 +274,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
         self.begin(state);
     }
 
-    /// Takes over from whatever applied `applied` until now, without a bump in thrust: the first command's thrust and
-    /// its first two derivatives continue it. Integrals and disturbances start at zero.
+    /// Takes over from whatever applied `applied` until now, without a bump: thrust goes on from there with the payload's vertical
+    /// acceleration, and the torque's step against it fades. Integrals and disturbances start at zero.
     pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
         self.sampler.engage(state, applied);
         self.begin(state);
@@ -264,12 +291,11 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
 
     /// Joins the path from what is being commanded, with what is known of disturbances.
     pub(crate) fn rejoin(&mut self, state: &State<T>, pace: &Pace<T>) -> bool {
-        let Some(approach) = Approach::start(&mut self.path, pace, state) else {
+        if !self.approach.begin(&mut self.path, pace, state) {
             return false;
-        };
+        }
         self.sampler.take_over(state);
         self.integral = [T::zero(); 3];
-        self.approach = approach;
         true
     }
 
@@ -284,36 +310,48 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     #[inline]
     pub fn step(&mut self, sampled: &State<T>) -> Solution<T, Xi<T>> {
         let ahead = self.sampler.ahead(sampled);
-        let mut solution = self.evaluate(&ahead);
-        solution.command = self.accept(&solution);
-        solution
+        self.evaluate(&ahead);
+        let command = self.accept();
+        Solution { command, ..self.solution }
     }
 
     /// The law's answer for the coming hold.
     #[inline(always)]
-    pub(crate) fn evaluate(&mut self, ahead: &Ahead<T>) -> Solution<T, Xi<T>> {
-        let mut path = self.approach.displace(&mut self.path, self.sampler.horizon());
+    pub(crate) fn evaluate(&mut self, ahead: &Ahead<T>) {
         let Ahead { state, zeta } = ahead;
         let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
-        law(vehicle, &mut path, &self.gains, state, zeta, &self.integral, disturbance)
+        let mut lift = lift(vehicle, state, zeta, disturbance);
+        let fading = self.approach.leave(self.sampler.horizon(), &mut lift.position);
+        let mut outputs = self.path.outputs(&lift.position);
+        if let Some(fading) = fading {
+            self.approach.fade(&fading, &mut outputs);
+        }
+        let yaw = Yaw::of(state);
+        self.solution.read(&self.gains, &self.integral, &yaw, &outputs);
+        self.solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
     }
 
-    /// Takes an answer: limits and sends its command, and moves on by a period.
+    /// Takes the answer: limits and sends its command, and moves on by a period.
     #[inline(always)]
-    pub(crate) fn accept(&mut self, solution: &Solution<T, Xi<T>>) -> Command<T> {
+    pub(crate) fn accept(&mut self) -> Command<T> {
         let period = self.sampler.period();
         self.approach.advance(period);
-        let Solution { command, u_zeta, margins, .. } = solution;
+        let Solution { command, u_zeta, margins, xi, .. } = &self.solution;
         let applied = self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3);
         // What the actuators can't give, no integral may ask for ever louder; nor count the way back for an error that stays.
         self.unsaturated = if self.sampler.is_saturated() { T::zero() } else { self.unsaturated + period };
         if self.unsaturated >= T::lit(RECOVERY) {
-            let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = solution.xi;
+            let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = *xi;
             for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
                 *integral += period * h;
             }
         }
         applied
+    }
+
+    /// The law's last answer, all zeros before the first; its command is what it was before the limits.
+    pub fn solution(&self) -> &Solution<T, Xi<T>> {
+        &self.solution
     }
 
     pub(crate) fn sampler(&mut self) -> &mut Sampler<T, A> {

@@ -28,13 +28,11 @@ const VELOCITY_GAIN: f64 = 2.0;
 const INTEGRAL_GAIN: f64 = 0.3;
 /// k_s, 1/s: about a fifth of critical damping for rods of metres.
 const SWING_GAIN: f64 = 0.8;
-/// Largest position error that counts, m, and largest integral, m/s².
+/// Largest position error that counts, m.
 const REACH: f64 = 2.0;
-/// Faster than this the integral waits: what is going on is no steady error, m/s.
+/// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it stays below this, m/s².
 const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
-/// Fastest swing that is yielded to, m/s.
-const LARGEST_SWING: f64 = 2.0;
 /// A rod that stands on its head, within 8°, may be in balance: an acceleration, m/s², topples it.
 const BALANCED: f64 = -0.99;
 const TOPPLING: f64 = 0.5;
@@ -62,10 +60,9 @@ impl<T: Real> Hold<T> {
     /// From where `state` is and as fast as it is.
     pub(crate) fn from(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
         let length = vehicle.params().rod_length;
-        let velocity = level(&(state.velocity - state.rod_rate * length));
         Self {
             target: state.position - state.rod * length,
-            velocity: limited(&velocity, T::lit(10.0)),
+            velocity: level(&(state.velocity - state.rod_rate * length)),
             integral: Vector3::zeros(),
         }
     }
@@ -90,11 +87,12 @@ impl<T: Real> Hold<T> {
         let uav_velocity = velocity - w * params.rod_length;
         let error = limited(&(uav - self.target), T::lit(REACH));
         let late = uav_velocity - self.velocity;
-        if late.dot(&late) < T::lit(SETTLING * SETTLING) {
-            let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
-            self.integral = limited(&integral, T::lit(INTEGRAL_BOUND));
+        let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
+        let is_settling = late.dot(&late) < T::lit(SETTLING * SETTLING);
+        if is_settling && integral.dot(&integral) < T::lit(INTEGRAL_BOUND * INTEGRAL_BOUND) {
+            self.integral = integral;
         }
-        let swing = limited(&level(&(w * params.rod_length)), T::lit(LARGEST_SWING));
+        let swing = level(&(w * params.rod_length));
         let mut acceleration =
             swing * T::lit(SWING_GAIN) - error * T::lit(POSITION_GAIN) - late * T::lit(VELOCITY_GAIN) - self.integral;
         if q.z < T::lit(BALANCED) {
@@ -102,8 +100,9 @@ impl<T: Real> Hold<T> {
         }
 
         self.target += self.velocity * period;
-        let mut wanted = self.velocity * (T::one() - period / T::lit(BRAKING)).max(T::zero());
-        wanted.z += descent * (period / T::lit(BRAKING)).min(T::one());
+        let share = period / T::lit(BRAKING);
+        let mut wanted = self.velocity * (T::one() - share);
+        wanted.z += descent * share;
         self.velocity = wanted;
 
         let gravity = params.gravity;

@@ -28,8 +28,10 @@ pub type PositionSeries<T> = [Series<T, 7>; 3];
 /// The payload's motion to fifth order, with what [`lower`](crate::lower::lower) needs to go back.
 #[derive(Clone, Copy, Debug)]
 pub struct Lift<T> {
-    /// p, v, p̈, …, p⁽⁵⁾ in N, m/sᵏ.
-    pub derivatives: [Vector3<T>; 6],
+    /// p in N, m.
+    pub position: PositionSeries<T>,
+    /// p⁗ in N, m/s⁴.
+    pub snap: Vector3<T>,
     /// λ, λ̇, λ̈, λ⃛: specific force along the rod, m/s²⁺ᵏ; λ = −g when hanging at rest.
     pub lambda: [T; 4],
     /// κ = T/(m_Q L), 1/s².
@@ -51,23 +53,18 @@ impl<T: Real> Lift<T> {
         self.kappa * vehicle.thrust_per_kappa
     }
 
-    /// The payload's position as a series in time.
+    /// p⁽ᵏ⁾ in N, m/sᵏ, k from 0 to 5.
     #[inline]
-    pub fn position(&self) -> PositionSeries<T> {
-        let [p, v, a, j, s, c] = &self.derivatives;
-        let series = |p, v, a, j, s, c| Series::from_derivatives([p, v, a, j, s, c, T::zero()]);
-        [
-            series(p.x, v.x, a.x, j.x, s.x, c.x),
-            series(p.y, v.y, a.y, j.y, s.y, c.y),
-            series(p.z, v.z, a.z, j.z, s.z, c.z),
-        ]
+    pub fn derivative(&self, k: usize) -> Vector3<T> {
+        let [x, y, z] = &self.position;
+        Vector3::new(x.derivative(k), y.derivative(k), z.derivative(k))
     }
 }
 
 /// Lifts `state` and the compensator's ζ = (v̇3, v̈3, …), m/s²⁺ᵏ, to the payload's series.
 ///
 /// Needs |`rod`| = 1, `rod_rate` ⊥ `rod` and an orthonormal attitude.
-#[inline(always)]
+#[inline(never)]
 pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], disturbance: &Disturbance<T>) -> Lift<T> {
     let (d, delta) = (&disturbance.payload, &disturbance.rod);
     let (d_1, delta_1) = (&disturbance.payload_rate, &disturbance.rod_rate);
@@ -110,10 +107,15 @@ pub fn lift<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, zeta: &[T; 4], dist
     let mut s_3 = q * lambda_3 + (w * lambda_2 + rod_2 * lambda_1) * three + rod_3 * lambda;
     s_3.z = zeta4;
 
-    let acceleration = Vector3::new(s.x + d.x, s.y + d.y, zeta1);
-    let jerk = Vector3::new(s_1.x + d_1.x, s_1.y + d_1.y, zeta2);
+    let (p, v) = (&state.position, &state.velocity);
+    let zero = T::zero();
     Lift {
-        derivatives: [state.position, state.velocity, acceleration, jerk, s_2, s_3],
+        position: [
+            Series::from_derivatives([p.x, v.x, s.x + d.x, s_1.x + d_1.x, s_2.x, s_3.x, zero]),
+            Series::from_derivatives([p.y, v.y, s.y + d.y, s_1.y + d_1.y, s_2.y, s_3.y, zero]),
+            Series::from_derivatives([p.z, v.z, zeta1, zeta2, zeta3, zeta4, zero]),
+        ],
+        snap: s_2,
         lambda: [lambda, lambda_1, lambda_2, lambda_3],
         kappa,
         kappa_dot,

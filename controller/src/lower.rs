@@ -45,8 +45,7 @@ pub fn lower<T: Real>(
     let rod_4 = (rest - q * lambda_4) * (T::one() / lambda);
 
     // What thrust direction has to bring: κ b3″ + κ″ b3 + 2 κ′ b3′.
-    let [.., s_2, _] = &lift.derivatives;
-    let bend = rod_4 - s_2 * vehicle.coupling;
+    let bend = rod_4 - lift.snap * vehicle.coupling;
     let b1 = state.attitude.column(0);
     let b2 = state.attitude.column(1);
     let per_kappa = T::one() / lift.kappa;

@@ -71,6 +71,24 @@ impl<T: Real, const N: usize> Series<T, N> {
         Series(c)
     }
 
+    /// The time integral that starts from `value`, one order longer.
+    #[inline]
+    pub fn integrate<const M: usize>(&self, value: T) -> Series<T, M> {
+        const { assert!(M == N + 1) };
+        let mut c = [T::zero(); M];
+        c[0] = value;
+        for k in 0..N {
+            c[k + 1] = self.0[k] * T::RECIPROCAL[k + 1];
+        }
+        Series(c)
+    }
+
+    /// Takes `factor` · `other` away, as far as that goes.
+    #[inline]
+    pub fn subtract<const M: usize>(&mut self, other: &Series<T, M>, factor: T) {
+        subtract(&mut self.0, &other.0, factor);
+    }
+
     /// The same polynomial about t = `dt` instead of t = 0 (Horner's synthetic division).
     #[inline]
     pub fn shift(&self, dt: T) -> Self {
@@ -81,6 +99,14 @@ impl<T: Real, const N: usize> Series<T, N> {
             }
         }
         Self(c)
+    }
+}
+
+/// For series of any length: what is called off the path, where a copy for each would only be larger.
+#[inline(never)]
+fn subtract<T: Real>(from: &mut [T], other: &[T], factor: T) {
+    for (c, &other) in from.iter_mut().zip(other) {
+        *c -= factor * other;
     }
 }
 

@@ -45,7 +45,7 @@ use crate::model::lambda;
 use crate::path::Path;
 use crate::sampler::Ahead;
 use crate::scalar::Real;
-use crate::state::{Channel, State};
+use crate::state::{Channel, State, is_within};
 use crate::yaw::Yaw;
 use nalgebra::Vector3;
 
@@ -154,7 +154,7 @@ impl<T: Real> Policy<T> {
     }
 }
 
-/// What a step answers.
+/// What a step answers; what the law had to say to it is in [`Supervisor::solution`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output<T> {
     /// Finite and within the limits; nothing at all in [`Mode::Off`].
@@ -165,8 +165,6 @@ pub struct Output<T> {
     pub fault: Option<Fault>,
     /// A margin past its warning.
     pub warning: Option<Margin>,
-    /// The law's own answer, where it was asked.
-    pub solution: Option<Solution<T, Xi<T>>>,
 }
 
 /// A path-following controller that answers every input.
@@ -176,9 +174,13 @@ pub struct Supervisor<T, P, A = ActuatorLimits<T>> {
     envelope: Envelope<T>,
     pace: Pace<T>,
     policy: Policy<T>,
+    /// Share of all mass that is left when the payload counts as lost.
+    least_mass: T,
     mode: Mode,
     request: Request,
     fault: Option<Fault>,
+    /// The last command was the law's.
+    is_by_law: bool,
     hold: Hold<T>,
     /// Time without a good state, of calm in hold, and without payload, s.
     blind: T,
@@ -197,14 +199,18 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         let vehicle = *follower.vehicle();
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
+        let params = vehicle.params();
+        let least_mass = (params.uav_mass + params.payload_mass * policy.payload_lost) / vehicle.total_mass();
         Ok(Self {
             follower,
             envelope: Envelope::new(&vehicle, envelope)?,
             pace,
             policy,
+            least_mass,
             mode: Mode::Off,
             request: Request::Off,
             fault: None,
+            is_by_law: false,
             hold: Hold::from(&vehicle, &State::at_rest(Vector3::zeros())),
             blind: T::zero(),
             calm: T::zero(),
@@ -215,6 +221,11 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// The mode as of the last step.
     pub fn mode(&self) -> Mode {
         self.mode
+    }
+
+    /// The law's own answer in the last step, where it was flown: what [`Output::command`] was before the limits, and what it came from.
+    pub fn solution(&self) -> Option<&Solution<T, Xi<T>>> {
+        self.is_by_law.then(|| self.follower.solution())
     }
 
     /// The law that is supervised.
@@ -260,53 +271,77 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         if request == Request::Off {
             self.mode = Mode::Off;
         }
+        self.is_by_law = false;
         match sampled.check() {
-            Err(channel) => self.without_state(channel),
+            Err(channel) => {
+                let command = self.without_state(channel);
+                self.output(command, None)
+            }
             Ok(()) => {
                 if self.blind > T::zero() {
                     self.blind = T::zero();
                     self.follower.sampler().resume(sampled);
                 }
-                self.with_state(sampled)
+                self.change_mode(sampled);
+                match self.mode {
+                    // In fault with a good state: the rotors were cut.
+                    Mode::Off | Mode::Fault => self.ground(sampled, T::zero()),
+                    Mode::Idle => self.ground(sampled, self.follower.actuation().least_thrust()),
+                    Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
+                }
             }
         }
     }
 
-    /// A step on a good state.
+    /// By the law, or by hold.
     #[inline]
-    fn with_state(&mut self, sampled: &State<T>) -> Output<T> {
-        self.change_mode(sampled);
-        match self.mode {
-            // In fault with a good state: the rotors were cut.
-            Mode::Off | Mode::Fault => self.grounded(sampled, Command::zero()),
-            Mode::Idle => {
-                let least = self.follower.actuation().least_thrust();
-                self.grounded(sampled, Command { thrust: least, torque: Vector3::zeros() })
-            }
-            Mode::Engage | Mode::Follow => self.following(sampled),
-            Mode::Hold | Mode::Land => self.hold_ahead(sampled),
+    fn fly(&mut self, sampled: &State<T>) -> Output<T> {
+        let ahead = self.follower.sampler().ahead(sampled);
+        if matches!(self.mode, Mode::Engage | Mode::Follow) {
+            self.follow(sampled, &ahead)
+        } else {
+            self.hold(sampled, &ahead.state)
         }
     }
 
-    /// The edges that requests and good states open.
+    /// An answer without the law's.
+    fn output(&self, command: Command<T>, warning: Option<Margin>) -> Output<T> {
+        Output { command, mode: self.mode, fault: self.fault, warning }
+    }
+
+    /// On the ground: no law, no torque.
+    #[cold]
+    fn ground(&mut self, sampled: &State<T>, thrust: T) -> Output<T> {
+        let command = Command { thrust, torque: Vector3::zeros() };
+        self.follower.sampler().engage(sampled, command);
+        self.output(command, None)
+    }
+
+    /// The edges that requests and good states open: the table's rows.
     fn change_mode(&mut self, sampled: &State<T>) {
-        match (self.mode, self.request) {
-            (Mode::Off, Request::Idle | Request::Follow | Request::Hold) => self.mode = Mode::Idle,
-            (Mode::Hold, Request::Follow) if self.may_follow() => self.engage(sampled),
-            (Mode::Idle | Mode::Engage | Mode::Follow | Mode::Land, Request::Hold)
-            | (Mode::Engage | Mode::Follow | Mode::Land, Request::Idle)
-            | (Mode::Idle | Mode::Land, Request::Follow) => self.enter_hold(sampled, None),
-            (Mode::Idle, Request::Land) => self.mode = Mode::Off,
-            (Mode::Engage | Mode::Follow | Mode::Hold, Request::Land) => {
+        let to = match (self.mode, self.request) {
+            (Mode::Off, Request::Off | Request::Land) => Mode::Off,
+            (Mode::Off, _) => Mode::Idle,
+            (Mode::Idle, Request::Off | Request::Idle) => Mode::Idle,
+            (Mode::Idle, Request::Land) => Mode::Off,
+            (Mode::Idle, _) => Mode::Hold,
+            (Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
+            (Mode::Engage, Request::Follow) if self.follower.approach().is_active() => Mode::Engage,
+            (Mode::Engage | Mode::Follow, Request::Follow) => Mode::Follow,
+            (Mode::Hold, Request::Follow) if self.may_follow() => Mode::Engage,
+            (Mode::Fault, _) if self.policy.lost == Lost::Cut => Mode::Fault,
+            _ => Mode::Hold,
+        };
+        if to == self.mode {
+            return;
+        }
+        match to {
+            Mode::Engage => self.engage(sampled),
+            Mode::Hold | Mode::Land => {
                 self.enter_hold(sampled, None);
-                self.mode = Mode::Land;
+                self.mode = to;
             }
-            (Mode::Fault, _) if self.policy.lost != Lost::Cut => {
-                let fault = self.fault;
-                self.enter_hold(sampled, fault);
-            }
-            (Mode::Engage, _) if !self.follower.approach().is_active() => self.mode = Mode::Follow,
-            _ => {}
+            _ => self.mode = to,
         }
     }
 
@@ -325,6 +360,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     }
 
     /// How the vehicle stands in the envelope under what is being applied; the path's margins are the law's to say.
+    #[inline(never)]
     fn standing(&mut self, sampled: &State<T>) -> Standing {
         let thrust = self.follower.sampler().applied().thrust;
         let vehicle = self.follower.vehicle();
@@ -357,41 +393,35 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         self.fault = fault.or(self.fault);
     }
 
-    /// The law's command, if its answer can be flown; hold's, if not.
+    /// The law's command for when it acts, if its answer can be flown; hold's, if not.
+    // Apart, and so is hold: neither needs the other's stack.
     #[inline(never)]
-    fn following(&mut self, sampled: &State<T>) -> Output<T> {
-        let ahead = self.follower.sampler().ahead(sampled);
-        let solution = self.follower.evaluate(&ahead);
+    fn follow(&mut self, sampled: &State<T>, ahead: &Ahead<T>) -> Output<T> {
+        self.follower.evaluate(ahead);
+        let solution = self.follower.solution();
         let standing = self.envelope.assess(&solution.margins, self.follower.approach().path_det());
         let fault = if let Standing::Beyond(margin) = standing {
             Some(Fault::Margin(margin))
-        } else if !(solution.command.is_finite() && solution.u_zeta.is_finite()) {
+        } else if !solution.is_finite() {
             Some(Fault::NotFinite)
-        } else if self.payload_is_lost(&ahead, solution.margins.lambda) {
+        } else if self.payload_is_lost(ahead) {
             Some(Fault::PayloadLost)
         } else {
             None
         };
         if fault.is_some() {
             self.enter_hold(sampled, fault);
-            return self.holding(sampled, sampled);
+            return self.hold(sampled, &ahead.state);
         }
-        let command = self.follower.accept(&solution);
+        let command = self.follower.accept();
+        self.is_by_law = true;
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
-        Output { command, mode: self.mode, fault: self.fault, warning, solution: Some(solution) }
-    }
-
-    /// Hold's command, looking ahead.
-    // Apart, and so is the law: neither needs the other's stack.
-    #[cold]
-    fn hold_ahead(&mut self, sampled: &State<T>) -> Output<T> {
-        let ahead = self.follower.sampler().ahead(sampled);
-        self.holding(sampled, &ahead.state)
+        self.output(command, warning)
     }
 
     /// Hold's command for when it acts, at `state`, from what is `sampled` now.
     #[cold]
-    fn holding(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
+    fn hold(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
         let period = self.follower.sampler().period();
         let (vehicle, disturbance) = (self.follower.vehicle(), self.follower.disturbance());
         let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
@@ -399,11 +429,10 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         if self.mode == Mode::Land && self.hold.left_above(vehicle, sampled) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
-            return self.grounded(sampled, Command::zero());
+            return self.ground(sampled, T::zero());
         }
-        let (speed, swing) = (sampled.velocity, sampled.rod_rate);
-        let is_calm = speed.dot(&speed) < T::lit(CALM_SPEED * CALM_SPEED)
-            && swing.dot(&swing) < T::lit(CALM_SWING * CALM_SWING)
+        let is_calm = is_within(&sampled.velocity, T::lit(CALM_SPEED * CALM_SPEED))
+            && is_within(&sampled.rod_rate, T::lit(CALM_SWING * CALM_SWING))
             && sampled.attitude.m33 > T::lit(CALM_TILT);
         self.calm = if is_calm { self.calm + period } else { T::zero() };
         let warning = match self.standing(sampled) {
@@ -411,27 +440,20 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             Standing::Warning(margin) | Standing::Beyond(margin) => Some(margin),
         };
         let command = self.follower.sampler().hold(wanted, T::zero(), T::zero());
-        Output { command, mode: self.mode, fault: self.fault, warning, solution: None }
+        self.output(command, warning)
     }
 
-    /// A command that needs no law.
+    /// The command of a step without a good state.
     #[cold]
-    fn grounded(&mut self, sampled: &State<T>, command: Command<T>) -> Output<T> {
-        self.follower.sampler().engage(sampled, command);
-        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
-    }
-
-    /// A step without a good state.
-    #[cold]
-    fn without_state(&mut self, channel: Channel) -> Output<T> {
+    fn without_state(&mut self, channel: Channel) -> Command<T> {
         self.fault = Some(Fault::State(channel));
         let hover = self.follower.vehicle().hover_thrust();
         let sampler = self.follower.sampler();
         self.blind += sampler.period();
-        let least = sampler.actuation().least_thrust();
-        let command = match self.mode {
+        let level = |thrust| Command { thrust, torque: Vector3::zeros() };
+        match self.mode {
             Mode::Off => Command::zero(),
-            Mode::Idle => Command { thrust: least, torque: Vector3::zeros() },
+            Mode::Idle => level(sampler.actuation().least_thrust()),
             Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => {
                 sampler.coast()
             }
@@ -439,21 +461,18 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
                 self.mode = Mode::Fault;
                 match self.policy.lost {
                     Lost::Cut => Command::zero(),
-                    Lost::Sink(share) => sampler.send(&Command { thrust: hover * share, torque: Vector3::zeros() }),
+                    Lost::Sink(share) => sampler.send(&level(hover * share)),
                 }
             }
-        };
-        Output { command, mode: self.mode, fault: self.fault, warning: None, solution: None }
+        }
     }
 
     /// Whether the payload's mass has been implied to be next to nothing for a while: M = M₀ λ/(λ + d·q), both sides negative.
     #[inline]
-    fn payload_is_lost(&mut self, ahead: &Ahead<T>, lambda: T) -> bool {
-        let vehicle = self.follower.vehicle();
-        let params = vehicle.params();
-        let least = params.uav_mass + params.payload_mass * self.policy.payload_lost;
+    fn payload_is_lost(&mut self, ahead: &Ahead<T>) -> bool {
+        let lambda = self.follower.solution().margins.lambda;
         let along = self.follower.disturbance().payload.dot(&ahead.state.rod);
-        let lost = vehicle.total_mass() * lambda > least * (lambda + along);
+        let lost = lambda > self.least_mass * (lambda + along);
         self.unloaded = if lost { self.unloaded + self.follower.sampler().period() } else { T::zero() };
         self.unloaded > T::lit(UNLOADED)
     }

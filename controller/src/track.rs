@@ -94,14 +94,12 @@ pub fn law<T: Real>(
 
     let [x, y, z] = &reference.position;
     let [k1, k2, k3] = &gains.position;
-    let p1 = lift.derivatives.map(|p| p.x);
-    let p2 = lift.derivatives.map(|p| p.y);
-    let p3 = lift.derivatives.map(|p| p.z);
-    let wanted = |k: &[T; 6], p: &[T; 6], reference: &Series<T, 7>| {
-        let error: [T; 6] = derivative_error(p, reference);
+    let [p1, p2, p3] = &lift.position;
+    let wanted = |k: &[T; 6], p: &Series<T, 7>, reference: &Series<T, 7>| {
+        let error = derivatives(&(*p - *reference));
         reference.derivative(6) - dot(k, &error)
     };
-    let position_6 = Vector3::new(wanted(k1, &p1, x), wanted(k2, &p2, y), wanted(k3, &p3, z));
+    let position_6 = Vector3::new(wanted(k1, p1, x), wanted(k2, p2, y), wanted(k3, p3, z));
     let yaw_error = [(yaw.angle - reference.yaw.value()).wrap_angle(), yaw.rate - reference.yaw.derivative(1)];
     let yaw_2 = reference.yaw.derivative(2) - dot(&gains.yaw, &yaw_error);
 
@@ -111,7 +109,7 @@ pub fn law<T: Real>(
             torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2, &disturbance.torque),
         },
         u_zeta: position_6.z,
-        xi: TrackXi { position: [p1, p2, p3], yaw: [yaw.angle, yaw.rate] },
+        xi: TrackXi { position: [p1, p2, p3].map(derivatives), yaw: [yaw.angle, yaw.rate] },
         nu: [position_6.x, position_6.y, position_6.z, yaw_2],
         margins: Margins {
             q3: state.rod.z,
@@ -125,15 +123,10 @@ pub fn law<T: Real>(
     }
 }
 
-/// p⁽ᵏ⁾ − p_ref⁽ᵏ⁾, k = 0 to 5.
+/// Derivatives 0 to 5.
 #[inline]
-fn derivative_error<T: Real>(p: &[T; 6], reference: &Series<T, 7>) -> [T; 6] {
-    let wanted: [T; 6] = core::array::from_fn(|k| reference.derivative(k));
-    let mut error = *p;
-    for (e, w) in error.iter_mut().zip(wanted) {
-        *e -= w;
-    }
-    error
+fn derivatives<T: Real>(p: &Series<T, 7>) -> [T; 6] {
+    core::array::from_fn(|k| p.derivative(k))
 }
 
 /// The trajectory-tracking controller: the law at a fixed rate.

@@ -32,7 +32,7 @@ impl<T: Real> Bent<T> {
 }
 
 impl<T: Real> Curve<T> for Bent<T> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [p1, p2, p3] = *position;
         let four = T::lit(4.0);

@@ -38,7 +38,7 @@ impl<T: Real> Circle<T> {
 }
 
 impl<T: Real> Curve<T> for Circle<T> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [x, y, z] = position;
         let distance_squared = x.square() + y.square();

@@ -29,7 +29,7 @@ impl<T: Real> Ellipse<T> {
 }
 
 impl<T: Real> Curve<T> for Ellipse<T> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [p1, p2, p3] = *position;
         let (x, y) = (p1 * self.per_a, p2 * self.per_b);

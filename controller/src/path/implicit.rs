@@ -42,7 +42,7 @@ fn truncated<T: Real>(gradient: [Series<T, 7>; 3]) -> [Series<T, 6>; 3] {
 }
 
 impl<T: Real, I: Implicit<T>> Curve<T> for Formula<I> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [h1, h2]: [Dual<_, 3>; 2] = self.0.surfaces(variables(*position));
         let gradients = [now(&h1.partials), now(&h2.partials)];

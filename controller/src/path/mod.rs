@@ -58,6 +58,21 @@ pub struct Outputs<T> {
     pub reach_margin: T,
 }
 
+impl<T: Real> Outputs<T> {
+    /// The vector whose products with ∇h1, ∇h2 and ρ are `products`, and the determinant (∇h1 × ∇h2)·ρ of this system; infinite or NaN
+    /// where that is zero.
+    #[inline(never)]
+    pub fn solve(&self, products: [T; 3]) -> (Vector3<T>, T) {
+        let ([g1, g2], rho) = (&self.gradients, &self.tangent);
+        let [r1, r2, r3] = products;
+        // The inverse's columns are the rows' cross products.
+        let c1 = g2.cross(rho);
+        let determinant = g1.dot(&c1);
+        let solution = (c1 * r1 + rho.cross(g1) * r2 + g1.cross(g2) * r3) * (T::one() / determinant);
+        (solution, determinant)
+    }
+}
+
 /// A closed curve with speed and yaw along it.
 pub trait Path<T: Real> {
     /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
@@ -96,7 +111,7 @@ where
     S: SpeedProfile<T, C>,
     Y: YawProfile<T>,
 {
-    #[inline(always)]
+    #[inline(never)]
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
         let located = self.curve.locate(position);
         Outputs {

@@ -43,7 +43,7 @@ impl<T: Real> Superellipse<T> {
 }
 
 impl<T: Real> Curve<T> for Superellipse<T> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [p1, p2, p3] = *position;
         let (x, y) = (p1 * self.per_a, p2 * self.per_b);

@@ -93,7 +93,7 @@ impl<T: Real> Tilted<T> {
 }
 
 impl<T: Real> Curve<T> for Tilted<T> {
-    #[inline]
+    #[inline(always)]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
         let [e1, e2, n] = &self.axes;
         let [p1, p2, p3] = *position;

@@ -79,9 +79,9 @@ impl<P: Path<f32>> Case for Following<P> {
         self.supervisor.step(state, Request::Follow)
     }
 
-    fn digest(output: &Self::Output, digest: &mut Digest) {
+    fn digest(&self, output: &Self::Output, digest: &mut Digest) {
         digest_command(&output.command, digest);
-        if let Some(solution) = &output.solution {
+        if let Some(solution) = self.supervisor.solution() {
             digest_solution(solution, digest);
         }
     }
@@ -116,7 +116,7 @@ impl Case for Tracking {
         self.0.step(state, &Reference::circle(5.0, -10.0, 1.0, *phase))
     }
 
-    fn digest(output: &Self::Output, digest: &mut Digest) {
+    fn digest(&self, output: &Self::Output, digest: &mut Digest) {
         digest_solution(output, digest);
     }
 }

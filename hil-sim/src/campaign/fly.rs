@@ -57,7 +57,7 @@ impl Steers for Supervised {
         let output = self.supervisor.step(&state.cast(), Request::Follow);
         Steering {
             command: Command { thrust: output.command.thrust.into(), torque: output.command.torque.map(f64::from) },
-            margins: output.solution.map(|solution| pilot::margins_f64(&solution.margins)),
+            margins: self.supervisor.solution().map(|solution| pilot::margins_f64(&solution.margins)),
             mode: output.mode,
             fault: output.fault,
             disturbance: self.supervisor.disturbance().cast(),
