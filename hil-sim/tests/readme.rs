@@ -19,26 +19,26 @@ fn its_scenario_is_valid_and_flies() {
 }
 
 #[test]
-fn its_instruction_counts_are_the_expected_ones() {
+fn its_costs_are_the_expected_ones() {
     let expected: serde_json::Value =
         serde_json::from_str(include_str!("../../firmware/bench/expected.json")).expect("JSON");
-    let count = |case: &str, end: &str| {
-        let count = expected["instructions"][case][end].as_u64().expect("a count");
-        format!("{},{:03}", count / 1000, count % 1000)
+    let grouped = |number: &serde_json::Value| {
+        let number = number.as_u64().expect("a count");
+        format!("{},{:03}", number / 1000, number % 1000)
     };
+    let count = |case: &str, end: &str| grouped(&expected["instructions"][case][end]);
+    let bytes = |case: &str| grouped(&expected["code_bytes_by_case"][case]);
     for (case, row) in [
         ("circle", "| circle |"),
         ("ellipse", "| ellipse, yaw along it |"),
         ("bent", "| bent curve, speed and yaw of position |"),
         ("fourier8", "| Fourier loop of 8 harmonics |"),
     ] {
-        let shown = format!("{row} {} to {} |", count(case, "best"), count(case, "worst"));
+        let shown = format!("{row} {} to {} | {} B |", count(case, "best"), count(case, "worst"), bytes(case));
         assert!(README.contains(&shown), "{shown}");
     }
-    for (case, row) in
-        [("joining", "| circle, while joining it from afar |"), ("track", "| tracking (without the supervisor) |")]
-    {
-        let shown = format!("{row} {}", count(case, "worst"));
-        assert!(README.contains(&shown), "{shown}");
-    }
+    let joining = format!("| circle, while joining it from afar | {} at most |", count("joining", "worst"));
+    let tracking =
+        format!("| tracking (without the supervisor) | {} | {} B |", count("track", "worst"), bytes("track"));
+    assert!(README.contains(&joining) && README.contains(&tracking), "{joining}, {tracking}");
 }

@@ -42,8 +42,10 @@ pub struct Case {
 pub struct Report {
     /// By case.
     pub instructions: BTreeMap<String, Extremes>,
-    /// Code of a step, of the largest implicit path, bytes.
+    /// Code of a step on the paper's circle with everything it can call, bytes.
     pub code_bytes: u32,
+    /// The same by case.
+    pub code_bytes_by_case: BTreeMap<String, u32>,
     /// State of the largest law, bytes: it has no statics.
     pub ram_bytes: u64,
     /// Bound on the stack of a step, the deepest case, bytes.
@@ -79,7 +81,10 @@ impl Report {
             compare(&format!("{name}, fewest instructions"), extremes.best, before.map(|before| before.best));
             compare(&format!("{name}, most instructions"), extremes.worst, before.map(|before| before.worst));
         }
-        compare("code, bytes", self.code_bytes.into(), Some(expected.code_bytes.into()));
+        for (name, &bytes) in &self.code_bytes_by_case {
+            let before = expected.code_bytes_by_case.get(name);
+            compare(&format!("{name}, bytes of code"), bytes.into(), before.map(|&before| before.into()));
+        }
         compare("state, bytes", self.ram_bytes, Some(expected.ram_bytes));
         compare("stack, bytes", self.stack_bytes.into(), Some(expected.stack_bytes.into()));
         let missing: Vec<&str> = expected
@@ -153,6 +158,7 @@ mod tests {
         Report {
             instructions: BTreeMap::from([("circle".to_owned(), Extremes { best: 10, worst })]),
             code_bytes: 1000,
+            code_bytes_by_case: BTreeMap::from([("circle".to_owned(), 1000)]),
             ram_bytes: 100,
             stack_bytes: 500,
             bit_identical: true,
