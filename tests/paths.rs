@@ -425,3 +425,27 @@ proptest! {
         prop_assert!(error <= NEAREST, "{:e} m off", error);
     }
 }
+
+#[test]
+fn a_yaw_more_by_whole_turns_is_the_same_yaw() {
+    use controller::disturbance::Disturbance;
+    use controller::follow::law;
+    use controller::{Gains, State, Vehicle, VehicleParams};
+
+    let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
+    let gains = Gains { k1: [1.0; 6], k2: [1.0; 6], k3: [1.0; 5], k4: [2.0, 3.0], integral: [0.0; 3] };
+    let state = State::at_rest(Vector3::new(5.0, 0.0, -10.0));
+    let answer = |yaw: f64| {
+        let mut path =
+            Profiled { curve: Circle::new(5.0, -10.0).unwrap(), speed: ConstantSpeed(0.0), yaw: FixedYaw(yaw) };
+        law(&vehicle, &mut path, &gains, &state, &[0.0; 4], &[0.0; 3], &Disturbance::none())
+    };
+    for yaw in [-3.0, -0.3, 0.0, 1.0, 3.1] {
+        for turns in [-15.0, -2.0, -1.0, 1.0, 2.0, 15.0] {
+            let (once, more) = (answer(yaw), answer(yaw + turns * std::f64::consts::TAU));
+            // The rounding of a hundred radians.
+            assert!((once.xi.h4[0] - more.xi.h4[0]).abs() < 3e-14, "{yaw} and {turns} turns: {:?}", more.xi.h4);
+            assert!((once.command.torque.z - more.command.torque.z).abs() < 3e-14, "{yaw} and {turns} turns");
+        }
+    }
+}

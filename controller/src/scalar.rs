@@ -22,6 +22,10 @@ pub(crate) mod sealed {
         const FACTORIAL: [Self; 8];
         /// 1/k! for k up to 7.
         const PER_FACTORIAL: [Self; 8];
+        /// 1.5 times two to the number of bits behind the point: added and taken away, it rounds to the nearest whole number.
+        const ROUND: Self;
+        /// As much as the numbers just above a half differ by.
+        const LITTLE: Self;
     }
 
     macro_rules! tables {
@@ -32,6 +36,8 @@ pub(crate) mod sealed {
                 const FACTORIAL: [Self; 8] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0];
                 const PER_FACTORIAL: [Self; 8] =
                     [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
+                const ROUND: Self = 1.5 / <$real>::EPSILON;
+                const LITTLE: Self = <$real>::EPSILON / 2.0;
             }
         };
     }
@@ -95,18 +101,13 @@ pub trait Real:
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
-    /// The angle `self` − 2πk in (−π, π], for |`self`| < 3π: one turn either way, as the difference of two yaws needs.
+    /// The angle `self` − 2πk in (−π, π], to within the rounding of its turns. In `f32`: for up to 4 million of them.
     #[inline]
     fn wrap_angle(self) -> Self {
-        let pi = Self::lit(core::f64::consts::PI);
-        let turn = Self::lit(core::f64::consts::TAU);
-        if self > pi {
-            self - turn
-        } else if self <= -pi {
-            self + turn
-        } else {
-            self
-        }
+        // Half a turn is none, minus half a turn is minus one: so a little less is rounded.
+        let turns = self * Self::lit(1.0 / core::f64::consts::TAU) - Self::LITTLE;
+        let whole = (turns + Self::ROUND) - Self::ROUND;
+        self - whole * Self::lit(core::f64::consts::TAU)
     }
 }
 
@@ -211,8 +212,8 @@ impl Real for f64 {
 /// polynomials on [−π/4, π/4] are those of the Cephes library's `sinf` and `cosf`.
 fn sin_cos_f32(x: f32) -> (f32, f32) {
     const RANGE: f32 = 8192.0;
-    // Adding 1.5·2²³ rounds to the nearest integer, which then stands in the low bits of the sum.
-    const ROUND: f32 = 12_582_912.0;
+    // The nearest integer then stands in the low bits of the sum.
+    const ROUND: f32 = <f32 as sealed::Sealed>::ROUND;
     const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
 
     if !(-RANGE..=RANGE).contains(&x) {
@@ -316,10 +317,22 @@ mod tests {
 
     #[test]
     fn angles_wrap_into_the_half_open_turn() {
-        let pi = core::f64::consts::PI;
-        assert_eq!(pi.wrap_angle(), pi);
-        assert_eq!((-pi).wrap_angle(), pi);
-        assert!((1.5 * pi).wrap_angle() + 0.5 * pi < 1e-15);
-        assert_eq!(0.25.wrap_angle(), 0.25);
+        fn check<T: Real>(least: f64) {
+            let pi = T::lit(core::f64::consts::PI);
+            assert_eq!(pi.wrap_angle(), pi);
+            assert_eq!((-pi).wrap_angle(), pi);
+            for i in -3000..=3000 {
+                let angle = T::lit(f64::from(i) * 0.01);
+                let wrapped = angle.wrap_angle();
+                assert!(wrapped > -pi - T::lit(least) && wrapped <= pi + T::lit(least), "{angle}: {wrapped}");
+                let turns = (angle - wrapped).to_f64() / core::f64::consts::TAU;
+                assert!((turns - libm::round(turns)).abs() < least, "{angle}: {wrapped}");
+                assert!(turns != 0.0 || angle == wrapped, "{angle}: {wrapped}");
+            }
+            assert!(T::lit(f64::NAN).wrap_angle().to_f64().is_nan());
+        }
+        // Of the rounding of five turns.
+        check::<f32>(2e-6);
+        check::<f64>(4e-15);
     }
 }

@@ -98,6 +98,8 @@ impl Sealed for Trapped {
     const RECIPROCAL: [Self; 8] = table(<f32 as Sealed>::RECIPROCAL);
     const FACTORIAL: [Self; 8] = table(<f32 as Sealed>::FACTORIAL);
     const PER_FACTORIAL: [Self; 8] = table(<f32 as Sealed>::PER_FACTORIAL);
+    const ROUND: Self = Self(<f32 as Sealed>::ROUND);
+    const LITTLE: Self = Self(<f32 as Sealed>::LITTLE);
 }
 
 impl Real for Trapped {

@@ -24,7 +24,7 @@ pub fn continuous<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<(), 
     let speed_slope = most(|profile| profile.speed_slope, speed * natural);
     let yaw_slope = most(|profile| profile.yaw_slope, natural);
 
-    // Values first, since where they jump their slopes say nothing. A yaw may change by a turn, which the law takes for none.
+    // Values first, since where they jump their slopes say nothing. A yaw may change by whole turns, which the law takes for none.
     let errors = |(from, before): &Point<Profile>, (to, after): &Point<Profile>| {
         let way = to.arc - from.arc;
         [
