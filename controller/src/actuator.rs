@@ -87,6 +87,7 @@ pub(crate) struct Actuators<T> {
     /// What acts up to this sample, and by how much that stepped at the last one.
     applied: Command<T>,
     step: Command<T>,
+    /// What the mean over the law's look ahead has over `applied`.
     drift: Command<T>,
 }
 

@@ -9,9 +9,9 @@
 //!
 //! which starts where the payload is and as fast as it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives zero
 //! at either end, so the displacement asks for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is,
-//! go to the path's along with the slide. T_b and T are times for which brake and slide, each, keep the limits on acceleration, tilt, rod angle and
-//! thrust, and the slide the one on speed: the shortest, but for a brake that snaps. The displacement is rigid, so this works for any path, in metres, and meets no singularity of the curve's
-//! functions on the way.
+//! go to the path's along with the slide. T_b and T are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt,
+//! rod angle and thrust, and the slide the one on speed; where it is the snap that limits a brake, it takes somewhat longer. The displacement is
+//! rigid, so this works for any path, in metres, and meets no singularity of the curve's functions on the way.
 
 use nalgebra::Vector3;
 
@@ -204,7 +204,7 @@ impl<T: Real> Approach<T> {
         }
     }
 
-    /// Takes the displacement of `ahead` s from now out of `position`, if a slide is under way then, and returns what speed and yaw need for theirs.
+    /// Takes the displacement of `ahead` s from now out of `position`, if there is one then, and returns what [`fade`](Self::fade) needs.
     #[inline(always)]
     pub(crate) fn leave(&self, ahead: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
         let elapsed = self.elapsed + ahead;

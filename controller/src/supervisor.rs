@@ -304,7 +304,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         }
     }
 
-    /// An answer without the law's.
+    /// `command` in the mode, and with the fault, that there is now.
     fn output(&self, command: Command<T>, warning: Option<Margin>) -> Output<T> {
         Output { command, mode: self.mode, fault: self.fault, warning }
     }
