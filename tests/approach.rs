@@ -7,10 +7,10 @@ use controller::{
     ActuatorLimits, ApproachLimits, Circle, Command, Follower, Gains, ObserverParams, Path, Pole, Sampling, State,
     Vector3, Vehicle, VehicleParams, place,
 };
-use hil_sim::multibody::{Loads, Multibody, rotation};
-use hil_sim::plant::{VehicleParameters, distance_to_circle};
-use hil_sim::random::{Purpose, Stream};
+use hil_sim::world::multibody::{Loads, Multibody, rotation};
+use hil_sim::world::random::{Purpose, Stream};
 use std::f64::consts::{PI, TAU};
+use witness::plant::{VehicleParameters, distance_to_circle};
 
 const RADIUS: f64 = 5.0;
 const P3: f64 = -10.0;

@@ -1,6 +1,6 @@
 //! `hil-sim eval`, line by line: golden vectors in all three arithmetics, and what it refuses.
 
-use hil_sim::eval::{Answer, evaluate};
+use hil_sim::study::eval::{Answer, evaluate};
 use serde_json::{Value, json};
 use tests::golden::{self, Gains, Vehicle, relative_error};
 

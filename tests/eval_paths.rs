@@ -1,6 +1,6 @@
 //! `hil-sim eval` with paths other than the circle: the golden ellipse and bent curve, built in and by formula.
 
-use hil_sim::eval::evaluate;
+use hil_sim::study::eval::evaluate;
 use serde_json::{Value, json};
 use tests::golden::{self, Follow, relative_error};
 

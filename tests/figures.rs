@@ -1,10 +1,10 @@
 //! The paper's figures, flown at 1 kHz, against the numbers of `hil-sim/scenarios/reference.toml`.
 
-use hil_sim::metrics::Results;
-use hil_sim::reference::{Reference, Variant};
-use hil_sim::route::SpeedSpec;
-use hil_sim::run::{Arithmetic, End, Options, fly, fly_simply};
-use hil_sim::scenario::{FIGURES, Law, Scenario, builtin};
+use hil_sim::describe::reference::{Reference, Variant};
+use hil_sim::describe::route::SpeedSpec;
+use hil_sim::describe::scenario::{FIGURES, Law, Scenario, builtin};
+use hil_sim::fly::metrics::Results;
+use hil_sim::fly::run::{Arithmetic, End, Options, fly, fly_simply};
 use std::sync::atomic::AtomicBool;
 
 /// A flight's sampling moves an event by some periods, and the reference is printed to milliseconds.

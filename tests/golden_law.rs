@@ -1,8 +1,8 @@
 //! The closed-form law against reference vectors that were computed in binary128 by differentiating the paper's equations.
 
-use controller::follow::{self, Gains};
+use controller::law::follow::{self, Gains};
+use controller::law::track::{self, Reference, TrackGains};
 use controller::path::{AlongTangent, Bent, ConstantSpeed, Ellipse, Formula, Implicit, Linear, Profiled};
-use controller::track::{self, Reference, TrackGains};
 use controller::{Analytic, Circle, Disturbance, OutOfRange, Path, Real, State, Vector3, Vehicle, VehicleParams};
 use tests::golden::{self, Follow, LawMeta, relative_error};
 

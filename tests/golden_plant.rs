@@ -1,7 +1,7 @@
 //! The plant against the reference vectors of model (1).
 
-use hil_sim::plant::{self, Input, VehicleParameters};
 use tests::golden::{self, relative_error};
+use witness::plant::{self, Input, VehicleParameters};
 
 /// Required of each of f, G and ẋ, as ‖Δ‖/‖·‖. The vectors are exact to half an ulp and f64 evaluation of (1) loses a few.
 const BOUND: f64 = 1e-13;

@@ -1,12 +1,10 @@
 //! The witness of the law against the reference vectors and closed loops, and the structure the theory gives it.
 
-use hil_sim::integrate::{Tolerance, adaptive};
-use hil_sim::jet::Scalar;
-use hil_sim::plant::{self, Input, VehicleParameters};
-use hil_sim::witness::{
-    self, Bent, Circle, Ellipse, Evaluation, Operating, OutputGains, Reference, Singular, WitnessPath,
-};
+use hil_sim::world::integrate::{Tolerance, adaptive};
 use tests::golden::{self, Follow, padded, relative_error};
+use witness::jet::Scalar;
+use witness::law::{Bent, Circle, Ellipse, Evaluation, Operating, OutputGains, Reference, Singular, WitnessPath};
+use witness::plant::{self, Input, VehicleParameters};
 
 /// Required of b̄, Ā and ū, as ‖Δ‖/‖·‖. Most of it is for ū where −b̄ + ν nearly cancels: in f64 the equations
 /// themselves, evaluated by any method, lose up to 5e-12 there.
@@ -109,7 +107,7 @@ fn evaluate<P: WitnessPath>(
     integral_gains: &[f64; 3],
 ) -> Result<Evaluation<19>, Singular> {
     let at = Operating { vehicle: &vehicle(&vector.par), x: &vector.x, zeta: &vector.zeta };
-    witness::follow(at, path, gains, integral_gains, &vector.integral)
+    witness::law::follow(at, path, gains, integral_gains, &vector.integral)
 }
 
 #[test]
@@ -136,7 +134,8 @@ fn tracking_vectors() {
     for (number, vector) in file.vectors.iter().enumerate() {
         let at = Operating { vehicle: &vehicle(&vector.par), x: &vector.x, zeta: &vector.zeta };
         let reference = Reference::circle(5.0, -10.0, 1.0, vector.t);
-        let got = witness::track(at, &reference, &gains).unwrap_or_else(|error| panic!("track {number}: {error}"));
+        let got =
+            witness::law::track(at, &reference, &gains).unwrap_or_else(|error| panic!("track {number}: {error}"));
         let expected = Expected {
             thrust: vector.thrust,
             xi: &vector.xi,
@@ -204,7 +203,7 @@ fn free_fall_is_singular() {
     let at = Operating { vehicle: &vehicle, x: &x, zeta: &[vehicle.gravity, 0.0, 0.0, 0.0] };
     let path = Circle { radius: 5.0, p3: -10.0, speed: 1.0 };
     let gains = padded(&golden::follow("circle").meta.gains_fig3);
-    assert_eq!(witness::follow(at, &path, &gains, &[0.0; 3], &[0.0; 3]), Err(Singular));
+    assert_eq!(witness::law::follow(at, &path, &gains, &[0.0; 3], &[0.0; 3]), Err(Singular));
 }
 
 /// A path given by formulas through every function, with a zero set equal to the circle's.
@@ -258,8 +257,8 @@ fn input_on_the_path_does_not_depend_on_its_formulas() {
     let at = Operating { vehicle: &vehicle, x: &x, zeta: &[0.0; 4] };
     let circle = Circle { radius: 5.0, p3: -10.0, speed: -5.0 };
     let gains = [[0.0; 6]; 4];
-    let plain = witness::follow(at, &circle, &gains, &[0.0; 3], &[0.0; 3]).expect("regular");
-    let other = witness::follow(at, &Disguised(circle), &gains, &[0.0; 3], &[0.0; 3]).expect("regular");
+    let plain = witness::law::follow(at, &circle, &gains, &[0.0; 3], &[0.0; 3]).expect("regular");
+    let other = witness::law::follow(at, &Disguised(circle), &gains, &[0.0; 3], &[0.0; 3]).expect("regular");
     // The rounding of fifth derivatives whose terms are some thousands.
     for value in plain.xi.iter().chain(&other.xi) {
         assert!(value.abs() < 1e-10, "{:?}", plain.xi);
@@ -289,9 +288,9 @@ fn closed_loops() {
             };
             let p = &run.path;
             let solution = match run.kind.as_str() {
-                "circle" => follow(witness::follow(at, &circle(p), &gains, &integral_gains, &integral)),
-                "ellipse" => follow(witness::follow(at, &ellipse(p), &gains, &integral_gains, &integral)),
-                "track" => witness::track(at, &Reference::circle(5.0, -10.0, 1.0, t), &gains)
+                "circle" => follow(witness::law::follow(at, &circle(p), &gains, &integral_gains, &integral)),
+                "ellipse" => follow(witness::law::follow(at, &ellipse(p), &gains, &integral_gains, &integral)),
+                "track" => witness::law::track(at, &Reference::circle(5.0, -10.0, 1.0, t), &gains)
                     .map(|s| (s.thrust, s.u_zeta, s.torque, [0.0; 3])),
                 other => panic!("unknown kind {other}"),
             };

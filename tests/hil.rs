@@ -8,10 +8,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use controller::{ActuatorLimits, ObserverParams, State};
+use hil_sim::describe::scenario::{FIGURES, Scenario, builtin};
+use hil_sim::fly::pilot::{Answers, Decision, Pilot};
+use hil_sim::fly::run::{self, Arithmetic, End, Flight};
 use hil_sim::hil::{Emulator, Endpoint, HilError, Options, Pace, Target, Wire, serve};
-use hil_sim::pilot::{Answers, Decision, Pilot};
-use hil_sim::run::{self, Arithmetic, End, Flight};
-use hil_sim::scenario::{FIGURES, Scenario, builtin};
 
 /// Remembers every number of every command, by its bits.
 struct Recorded<A> {

@@ -1,12 +1,12 @@
 //! Lift and lower against the flow they speak of: every derivative the lift states is the rate of the one before it, and the torque that lower
 //! gives makes the sixth what was asked for. With disturbances that grow.
 
-use controller::compensator::propagate;
-use controller::disturbance::Disturbance;
-use controller::lift::{Lift, lift};
-use controller::lower::lower;
-use controller::model::Model;
-use controller::yaw::Yaw;
+use controller::Disturbance;
+use controller::Yaw;
+use controller::dynamics::Model;
+use controller::law::compensator::propagate;
+use controller::law::lift::{Lift, lift};
+use controller::law::lower::lower;
 use controller::{Command, Matrix3, State, Vector3, Vehicle, VehicleParams};
 use proptest::prelude::*;
 

@@ -1,14 +1,14 @@
 //! What the disturbance observers find, and what they cost: the f32 law at 500 Hz on the circle of 5 m at 1 m/s, on a plant that differs
 //! from what the law is told.
 
-use controller::disturbance::Disturbance;
+use controller::Disturbance;
 use controller::{
     ActuatorLimits, Circle, Command, Follower, Gains, ObserverParams, Pole, Sampling, State, Vector3, Vehicle,
     VehicleParams, place,
 };
-use hil_sim::multibody::{Loads, Multibody};
-use hil_sim::plant::{VehicleParameters, distance_to_circle};
+use hil_sim::world::multibody::{Loads, Multibody};
 use std::ops::Range;
+use witness::plant::{VehicleParameters, distance_to_circle};
 
 const RADIUS: f64 = 5.0;
 const P3: f64 = -10.0;

@@ -428,8 +428,8 @@ proptest! {
 
 #[test]
 fn a_yaw_more_by_whole_turns_is_the_same_yaw() {
-    use controller::disturbance::Disturbance;
-    use controller::follow::law;
+    use controller::Disturbance;
+    use controller::law::follow::law;
     use controller::{Gains, State, Vehicle, VehicleParams};
 
     let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();

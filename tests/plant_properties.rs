@@ -1,11 +1,11 @@
 //! What holds for the plant whatever the state (balances of energy and momentum, symmetry) and for the integrators
 //! (their orders).
 
-use hil_sim::integrate::{self, Tolerance};
-use hil_sim::jet::Dual;
-use hil_sim::plant::{self, Input, STATES, VehicleParameters};
+use hil_sim::world::integrate::{self, Tolerance};
 use proptest::prelude::*;
 use std::cell::Cell;
+use witness::jet::Dual;
+use witness::plant::{self, Input, STATES, VehicleParameters};
 
 type State = [f64; STATES];
 

@@ -2,8 +2,8 @@
 //! f are cₖ = (1/2π) ∫ f(r e^{iθ}) r⁻ᵏ e^{−ikθ} dθ, which the trapezoidal rule gives to rounding in complex arithmetic
 //! that shares nothing with the recurrences under test.
 
-use controller::dual::{Dual, variables};
 use controller::{Analytic, Real, Series};
+use controller::{Dual, variables};
 use num_complex::Complex64;
 
 /// Number of orders under test: all that the library has.

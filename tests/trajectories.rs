@@ -1,12 +1,15 @@
 //! Closed loops in continuous time: the f64 law on the plant, integrated adaptively, against the reference trajectories.
 
-use controller::disturbance::Disturbance;
-use controller::{Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams, follow, track};
-use hil_sim::course::parse_path;
-use hil_sim::input::Invalid;
-use hil_sim::integrate::{Tolerance, adaptive};
-use hil_sim::plant::{Input, VehicleParameters, derivative};
+use controller::Disturbance;
+use controller::{
+    Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams,
+    law::{follow, track},
+};
+use hil_sim::describe::course::parse_path;
+use hil_sim::describe::input::Invalid;
+use hil_sim::world::integrate::{Tolerance, adaptive};
 use tests::golden::{self, Trajectory};
+use witness::plant::{Input, VehicleParameters, derivative};
 
 /// The plant's 16 coordinates, ζ, ξ̃.
 type Loop = [f64; 23];
@@ -112,7 +115,7 @@ fn follows(name: &str, path: &(impl Path<f64> + Clone)) {
         let xi = &solution.xi;
         // The reference has no ξ̃ where it has no integral action.
         let integrand = if reference.integral_gains.is_some() { [xi.h1[0], xi.h2[0], xi.h3[0]] } else { [0.0; 3] };
-        Answer { input: hil_sim::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand }
+        Answer { input: hil_sim::fly::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand }
     });
 }
 
@@ -154,6 +157,6 @@ fn trajectory_tracking_of_figure_3() {
     compare(name, reference, |t, state, zeta, _| {
         let wanted = Reference::circle(5.0, -10.0, 1.0, t);
         let solution = track::law(&vehicle, &gains, &wanted, state, zeta, &Disturbance::none());
-        Answer { input: hil_sim::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand: [0.0; 3] }
+        Answer { input: hil_sim::fly::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand: [0.0; 3] }
     });
 }

@@ -9,7 +9,7 @@
 //!
 //! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
 //! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
-//! the supervisor (`controller::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no
+//! the supervisor (`controller::flight::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no
 //! number, and it knows what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a
 //! guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
 

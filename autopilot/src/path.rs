@@ -1,6 +1,6 @@
 //! The path that the parameters describe: any of the controller's curves, chosen at run time.
 
-use controller::lift::PositionSeries;
+use controller::law::lift::PositionSeries;
 use controller::path::{
     AlongTangent, Bent, ConstantSpeed, CurvatureLimited, Curve, Curved, Ellipse, FixedYaw, Formula, FourierPath,
     Harmonics, Located, PointingAt, Profiled, SpeedProfile, Superellipse, Tilted, YawProfile,

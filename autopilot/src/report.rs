@@ -2,8 +2,8 @@
 
 use core::fmt::Write;
 
-use controller::model;
-use controller::state::Channel;
+use controller::Channel;
+use controller::dynamics;
 use controller::{Fault, Margin, Mode, Request, State};
 use link::dialect::{LOAD_TELEMETRY_DATA, LoadFault, LoadMode};
 
@@ -109,7 +109,7 @@ pub fn telemetry(
     step: &Step,
 ) -> LOAD_TELEMETRY_DATA {
     let (vehicle, found) = (law.vehicle(), law.disturbance());
-    let lambda = model::lambda(vehicle, state, step.command.thrust);
+    let lambda = dynamics::lambda(vehicle, state, step.command.thrust);
     let mut telemetry = LOAD_TELEMETRY_DATA {
         sequence,
         integral: integral.map(number),

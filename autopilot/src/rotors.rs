@@ -1,6 +1,6 @@
 //! From what the law asks for to what the rotors are told.
 
-use controller::allocation::Place;
+use controller::sampled::allocation::Place;
 use controller::{Actuation, ActuatorLimits, Command, OutOfRange, RotorParams, Rotors};
 
 use crate::parameters::{Parameter, Parameters};

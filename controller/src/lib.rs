@@ -4,9 +4,9 @@
 //! Design principles:
 //!
 //! 1. Parameters are checked once, where they are set; `step` is total, allocation-free and of constant cost.
-//! 2. One source, two scalars: `f32` flies, `f64` measures its rounding ([`scalar::Real`]).
+//! 2. One source, two scalars: `f32` flies, `f64` measures its rounding ([`Real`]).
 //! 3. No chart where it flies: the state lives on R³ × S² × SO(3), and the law takes no sine, cosine or tangent.
-//! 4. Data goes one way: state → [lift](mod@lift) → [path](path::Path) → gains → 3×3 → [lower](mod@lower) → command.
+//! 4. Data goes one way: state → [lift](law::lift) → [path](path::Path) → gains → 3×3 → [lower](law::lower) → command.
 //!
 //! Conventions: inertial frame N is NED-like, **n3 points down**; thrust acts along −b3; the rod vector points **from the
 //! UAV to the payload**; positions and velocities are the payload's. SI units throughout.
@@ -35,49 +35,20 @@
 //! ```
 #![no_std]
 
-pub mod actuator;
-pub mod allocation;
-pub mod analytic;
-pub mod approach;
-pub mod compensator;
-pub mod disturbance;
-pub mod dual;
-pub mod envelope;
-pub mod error;
-pub mod follow;
-pub mod gains;
-mod hold;
-pub mod lift;
-pub mod lower;
-pub mod model;
+pub mod flight;
+pub mod law;
 pub mod path;
-pub mod sampler;
-pub mod scalar;
-pub mod series;
-pub mod state;
-pub mod supervisor;
-pub mod track;
-#[cfg(feature = "trap")]
-pub mod trap;
-pub mod vehicle;
-pub mod yaw;
+pub mod sampled;
 
-pub use actuator::{Actuation, ActuatorLimits};
-pub use allocation::{Allocation, RotorParams, Rotors};
-pub use analytic::Analytic;
-pub use approach::ApproachLimits;
-pub use compensator::Command;
-pub use disturbance::{Disturbance, ObserverParams};
-pub use envelope::{Band, Envelope, EnvelopeParams, Margin, Margins};
-pub use error::OutOfRange;
-pub use follow::{Follower, Gains, SetupError, Solution, Xi};
-pub use gains::{GainError, Pole, place};
-pub use nalgebra::{Matrix3, Vector3};
+pub use flight::approach::ApproachLimits;
+pub use flight::envelope::{Band, Envelope, EnvelopeParams, Margin, Margins};
+pub use flight::supervisor::{Fault, Lost, Mode, Output, Policy, Request, Supervisor};
+pub use law::follow::{Follower, Gains, SetupError, Solution, Xi};
+pub use law::gains::{GainError, Pole, place};
+pub use law::track::{Reference, TrackGains, TrackXi, Tracker};
+pub use model::*;
 pub use path::{Circle, Path};
-pub use sampler::Sampling;
-pub use scalar::Real;
-pub use series::Series;
-pub use state::State;
-pub use supervisor::{Fault, Lost, Mode, Output, Policy, Request, Supervisor};
-pub use track::{Reference, TrackGains, TrackXi, Tracker};
-pub use vehicle::{Vehicle, VehicleParams};
+pub use sampled::actuator::{Actuation, ActuatorLimits};
+pub use sampled::allocation::{Allocation, Place, RotorParams, Rotors};
+pub use sampled::observer::ObserverParams;
+pub use sampled::sampler::Sampling;

@@ -1,8 +1,8 @@
 //! Which curves are refused and where, and what the others ask of a vehicle.
 
 use controller::{Vector3, Vehicle, VehicleParams};
-use hil_sim::check::{Limits, Reason, Refusal, Report};
-use hil_sim::course::{PathSpec, parse_path};
+use hil_sim::describe::course::{PathSpec, parse_path};
+use hil_sim::study::check::{Limits, Reason, Refusal, Report};
 use serde_json::{Value, json};
 use std::f64::consts::{PI, TAU};
 

@@ -1,9 +1,9 @@
 //! Waypoints to curves: known curves come back, wiggles do not, and bad files are refused with their place.
 
 use controller::Vector3;
-use hil_sim::check::probe::length;
-use hil_sim::course::parse_path;
-use hil_sim::fit::{self, FitError, LEAST_ANGLE, fit, read};
+use hil_sim::describe::course::parse_path;
+use hil_sim::study::check::probe::length;
+use hil_sim::study::fit::{self, FitError, LEAST_ANGLE, fit, read};
 use std::f64::consts::TAU;
 
 fn loop_of(count: usize, curve: impl Fn(f64) -> [f64; 3]) -> Vec<Vector3<f64>> {
@@ -154,8 +154,8 @@ fn the_building_scenarios_hold_the_fit_of_their_waypoints() {
     let points = read("building.csv", include_str!("../scenarios/building.csv")).unwrap();
     let found = fit(&points, 0.05).unwrap();
     for name in ["building", "building-light", "building-heavy"] {
-        let scenario = hil_sim::scenario::builtin(name).unwrap().unwrap();
-        let hil_sim::scenario::Law::Follow { path, .. } = scenario.controller.law else { panic!("{name}") };
+        let scenario = hil_sim::describe::scenario::builtin(name).unwrap().unwrap();
+        let hil_sim::describe::scenario::Law::Follow { path, .. } = scenario.controller.law else { panic!("{name}") };
         let off = found.lap.nodes().iter().map(|node| path.distance(node.position().into())).fold(0.0, f64::max);
         // The file's coefficients are rounded to nanometres.
         assert!(off < 1e-7, "{name}: {off:e}");

@@ -1,8 +1,8 @@
 //! Formulas: values, precedence, errors with their column, and totality of the parser.
 
-use hil_sim::formula::{Constants, Formula};
-use hil_sim::jet::{Scalar, Taylor};
+use hil_sim::describe::formula::{Constants, Formula};
 use proptest::prelude::*;
+use witness::jet::{Scalar, Taylor};
 
 fn constants() -> Constants {
     [("r".to_owned(), 5.0), ("height".to_owned(), -10.0)].into()

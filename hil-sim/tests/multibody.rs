@@ -1,14 +1,14 @@
 //! The plant on R³ × S² × SO(3) against the plant in the paper's coordinates, against the law's own model, and against
 //! the balances that hold whatever the forces.
 
-use controller::disturbance::Disturbance;
-use controller::model::Model;
+use controller::Disturbance;
+use controller::dynamics::Model;
 use controller::{Command, State, Vector3, Vehicle, VehicleParams};
-use hil_sim::integrate::rk4;
-use hil_sim::jet::Dual;
-use hil_sim::multibody::{Loads, Multibody};
-use hil_sim::plant::{self, Input, STATES, VehicleParameters};
+use hil_sim::world::integrate::rk4;
+use hil_sim::world::multibody::{Loads, Multibody};
 use proptest::prelude::*;
+use witness::jet::Dual;
+use witness::plant::{self, Input, STATES, VehicleParameters};
 
 /// Paper coordinates away from the chart's ends, rates up to 2 rad/s and speeds up to 5 m/s.
 fn state() -> impl Strategy<Value = [f64; STATES]> {

@@ -1,12 +1,12 @@
 //! Paths as described by a user: the law against the witness on random formulas, and the errors of a description.
 
-use controller::disturbance::Disturbance;
-use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, follow};
-use hil_sim::course::{PathSpec, parse_path};
-use hil_sim::plant::VehicleParameters;
-use hil_sim::witness::Operating;
+use controller::Disturbance;
+use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, law::follow};
+use hil_sim::describe::course::{PathSpec, parse_path};
 use proptest::prelude::*;
 use serde_json::{Value, json};
+use witness::law::Operating;
+use witness::plant::VehicleParameters;
 
 /// ‖Δū‖/‖ū‖ between the f64 law and the witness on the same path; `None` where the witness finds the law singular.
 fn difference(path: &PathSpec, x: &[f64; 16], zeta: &[f64; 4]) -> Option<f64> {

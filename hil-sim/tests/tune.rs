@@ -1,7 +1,7 @@
 //! Tuning: the same for any number of threads, what it proposes is what it flew, and what it says follows from its numbers.
 
-use hil_sim::scenario::{Law, Scenario};
-use hil_sim::tune::{self, Tuning, trade, tune};
+use hil_sim::describe::scenario::{Law, Scenario};
+use hil_sim::study::tune::{self, Tuning, trade, tune};
 use std::sync::atomic::AtomicBool;
 
 const SCALES: [f64; 2] = [0.8, 1.2];

@@ -2,9 +2,9 @@
 
 use autopilot::{Answer, Autopilot, Boot, Parameter};
 use controller::{Command, Mode, State, Vector3};
-use hil_sim::multibody::{Loads, Multibody};
-use hil_sim::plant::VehicleParameters;
+use hil_sim::world::multibody::{Loads, Multibody};
 use link::dialect::*;
+use witness::plant::VehicleParameters;
 
 use crate::rig::{Rig, frame_of, is_flyable, start};
 

@@ -4,8 +4,8 @@ use controller::{
     ActuatorLimits, ApproachLimits, Circle, Command, EnvelopeParams, Follower, Gains, Mode, ObserverParams, Output,
     Path, Pole, Policy, Request, Sampling, State, Supervisor, Vector3, Vehicle, VehicleParams, place,
 };
-use hil_sim::multibody::{Loads, Multibody};
-use hil_sim::plant::VehicleParameters;
+use hil_sim::world::multibody::{Loads, Multibody};
+use witness::plant::VehicleParameters;
 
 /// Control period, s.
 pub const PERIOD: f64 = 0.002;
@@ -61,7 +61,7 @@ fn exact(command: &Command<f32>) -> Command<f64> {
 
 /// Distance from the circle, m.
 pub fn deviation(position: &Vector3<f64>) -> f64 {
-    hil_sim::plant::distance_to_circle([position.x, position.y, position.z], CIRCLE[0], CIRCLE[1])
+    witness::plant::distance_to_circle([position.x, position.y, position.z], CIRCLE[0], CIRCLE[1])
 }
 
 /// A flight: the plant under a supervised law, behind rotors of a first-order lag.

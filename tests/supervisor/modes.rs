@@ -1,10 +1,10 @@
-//! Every edge of the transition table, as the documentation of `controller::supervisor` has it.
+//! Every edge of the transition table, as the documentation of `controller::flight::supervisor` has it.
 
 use controller::{Fault, Margin, Mode, Path, Policy, Request, Sampling, State, Vector3};
 
 use crate::flight::{CIRCLE, Flight, PERIOD, supervisor};
 
-const DOCUMENTATION: &str = include_str!("../../controller/src/supervisor.rs");
+const DOCUMENTATION: &str = include_str!("../../controller/src/flight/supervisor.rs");
 
 /// The table: its columns' names, and the rows' cells with the mode's name first.
 fn table() -> Vec<Vec<String>> {

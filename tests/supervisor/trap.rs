@@ -1,7 +1,10 @@
 //! The scalar that stops at the first invalid operation, in flight.
 
-use hil_sim::run::{Arithmetic, fly_simply};
-use hil_sim::scenario;
+use controller::{
+    Circle, Command, Follower, Gains, Pole, Real, Sampling, State, Trapped, Vector3, Vehicle, VehicleParams, place,
+};
+use hil_sim::describe::scenario;
+use hil_sim::fly::run::{Arithmetic, fly_simply};
 
 #[test]
 fn a_flight_meets_no_invalid_operation_and_is_the_same_with_the_trap_set() {
@@ -10,4 +13,36 @@ fn a_flight_meets_no_invalid_operation_and_is_the_same_with_the_trap_set() {
     let trapped = fly_simply(&scenario, Arithmetic::Trapped).unwrap();
     assert!(!plain.log.is_empty());
     assert_eq!(plain.log, trapped.log);
+}
+
+/// The law from `state`, three steps of it, without a supervisor.
+fn law<T: Real>(state: &State<f64>) -> [Command<f64>; 3] {
+    let circle = Circle::new(T::lit(5.0), T::lit(-10.0)).unwrap().at_speed(T::one());
+    let k = place(&[-1.0, -2.0, -3.0, -4.0, -5.0, -6.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap();
+    let gains = Gains {
+        k1: k,
+        k2: k,
+        k3: place(&[-1.0, -2.0, -3.0, -4.0, -5.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap(),
+        k4: place(&[-2.0, -3.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap(),
+        integral: [T::zero(); 3],
+    };
+    let vehicle = Vehicle::new(VehicleParams::default()).unwrap();
+    let mut follower = Follower::new(vehicle, circle, gains, Sampling::every(T::lit(0.002))).unwrap();
+    follower.start(&state.cast(), [T::zero(); 4]);
+    core::array::from_fn(|_| {
+        let Command { thrust, torque } = follower.step(&state.cast()).command;
+        Command { thrust: thrust.to_f64(), torque: torque.map(Real::to_f64) }
+    })
+}
+
+#[test]
+fn a_trapped_law_is_the_flying_one() {
+    let state = State::at_rest(Vector3::new(5.5, 0.3, -9.8));
+    assert_eq!(law::<Trapped>(&state), law::<f32>(&state));
+}
+
+#[test]
+#[should_panic(expected = "invalid operation")]
+fn a_law_at_its_singularity_stops() {
+    law::<Trapped>(&State { rod: Vector3::x(), ..State::at_rest(Vector3::new(5.5, 0.3, -9.8)) });
 }

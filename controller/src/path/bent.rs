@@ -1,12 +1,10 @@
 //! A rounded rectangle seen from above, on a wave.
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use model::{Analytic, OutOfRange, Real, Series};
+
+use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// h1 = (p1/a)⁴ + (p2/b)⁴ − 1,  h2 = p3 − c0 − A sin(k p1) with A = 0.5 m and k = 0.5 rad/m, along (3).
 #[derive(Clone, Copy, Debug, PartialEq)]

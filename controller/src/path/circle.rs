@@ -1,14 +1,11 @@
 //! The paper's horizontal circle (16).
 
+use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use crate::law::lift::PositionSeries;
 use crate::path::curve::velocity;
 use crate::path::{ConstantSpeed, Curve, Curved, FixedYaw, Located, Profiled};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// Circle of radius d1 about the n3 axis at height p3 = d2, with the outputs of (16):
 ///

@@ -1,11 +1,9 @@
 //! What a curve answers: where the payload is with respect to it.
 
+use model::{Analytic, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::lift::PositionSeries;
-use crate::scalar::Real;
-use crate::series::Series;
+use crate::law::lift::PositionSeries;
 
 /// Where a payload is with respect to a curve, along its Taylor series.
 #[derive(Clone, Copy, Debug)]

@@ -5,14 +5,12 @@
 //! ∇h1 = (F1, F2, 0),   ∇h2 = (−H′, 0, 1),   ∇h1 × ∇h2 = (F2, −F1, H′ F2)
 //! ```
 
+use model::{Analytic, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::lift::PositionSeries;
+use crate::law::lift::PositionSeries;
 use crate::path::Located;
 use crate::path::curve::{norm_squared, velocity};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// Locates the payload from h1 and h2, the outline's gradient (F1, F2), the product with H′ (which may be a number or a series),
 /// and H′ now.

@@ -1,12 +1,10 @@
 //! An ellipse seen from above, on a plane that is inclined along n1.
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use model::{Analytic, OutOfRange, Real, Series};
+
+use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// h1 = (p1/a)² + (p2/b)² − 1,  h2 = p3 − c0 − c1 p1, both along (3): seen from above (n3 down), ρ turns from n2 to n1.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,12 +1,10 @@
 //! Functions of position, for speeds and yaws.
 
+use model::{Analytic, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::lift::PositionSeries;
+use crate::law::lift::PositionSeries;
 use crate::path::{Formula, Located, SpeedProfile, YawProfile};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// A function of position given as a formula. In a [`Formula`] it is a [`SpeedProfile`] (in m/s) and a [`YawProfile`] (in rad).
 pub trait ScalarField<T: Real> {

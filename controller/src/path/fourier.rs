@@ -5,15 +5,12 @@
 
 use core::array::from_fn;
 
+use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use crate::law::lift::PositionSeries;
 use crate::path::curve::{dot, norm_squared, now, velocity};
 use crate::path::{Curve, Curved, Harmonics, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// Orders of p(t), hence of σ(t).
 const N: usize = 7;

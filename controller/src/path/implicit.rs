@@ -1,12 +1,10 @@
 //! Curves and profiles given as formulas.
 
-use crate::analytic::Analytic;
-use crate::dual::{Dual, variables};
-use crate::lift::PositionSeries;
+use model::{Analytic, Dual, Real, Series, variables};
+
+use crate::law::lift::PositionSeries;
 use crate::path::curve::{cross, now};
 use crate::path::{Curve, Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// A curve as the common zero of two formulas; it runs along (3), so exchanging them turns it round. In a [`Formula`] it is a
 /// [`Curve`] with [curvature](Curved): gradients and their derivatives come from dual numbers over series.

@@ -35,11 +35,10 @@ pub use superellipse::Superellipse;
 pub use tilted::Tilted;
 pub use yaw::{AlongTangent, FixedYaw, YawProfile};
 
+use model::{Real, Series};
 use nalgebra::Vector3;
 
-use crate::lift::PositionSeries;
-use crate::scalar::Real;
-use crate::series::Series;
+use crate::law::lift::PositionSeries;
 
 /// The outputs (4) along the payload's series, with the input's contribution to the highest orders left out.
 #[derive(Clone, Copy, Debug)]

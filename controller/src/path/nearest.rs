@@ -1,9 +1,7 @@
 //! A closed curve as a Fourier series, and the point of it nearest to a given one.
 
+use model::{OutOfRange, Real};
 use nalgebra::Vector3;
-
-use crate::error::OutOfRange;
-use crate::scalar::Real;
 
 /// Newton steps from the last sample's nearest point to the present one, always all of them.
 ///

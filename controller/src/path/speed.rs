@@ -1,11 +1,9 @@
 //! Speeds prescribed along a curve.
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use model::{Analytic, OutOfRange, Real, Series};
+
+use crate::law::lift::PositionSeries;
 use crate::path::{Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// The speed v_d prescribed along a curve `C`, as a function of position.
 pub trait SpeedProfile<T: Real, C> {

@@ -1,12 +1,10 @@
 //! A superellipse (Lamé's curve) seen from above, on a plane that is inclined along n1.
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use model::{Analytic, OutOfRange, Real, Series};
+
+use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// h1 = (p1/a)ⁿ + (p2/b)ⁿ − 1,  h2 = p3 − c0 − c1 p1, n even, along (3) as the ellipse: n = 2 is one, and the larger n, the closer
 /// to a rectangle with rounded corners.

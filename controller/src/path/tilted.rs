@@ -1,13 +1,10 @@
 //! A circle or ellipse in any plane.
 
+use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::analytic::Analytic;
-use crate::error::OutOfRange;
-use crate::lift::PositionSeries;
+use crate::law::lift::PositionSeries;
 use crate::path::{Curve, Curved, Located};
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// Ellipse about the centre c in the plane of the orthonormal axes e1 and e2, n = e1 × e2:
 ///

@@ -1,10 +1,9 @@
 //! Yaws prescribed along a curve.
 
-use crate::analytic::Analytic;
-use crate::lift::PositionSeries;
+use model::{Analytic, Real, Series};
+
+use crate::law::lift::PositionSeries;
 use crate::path::Located;
-use crate::scalar::Real;
-use crate::series::Series;
 
 /// The yaw ψ_d prescribed along a curve, as a function of position.
 ///

@@ -1,7 +1,7 @@
 //! `campaign` and `merge`: thousands of drawn flights.
 
 use clap::Args;
-use hil_sim::campaign::{self, Campaign, Identity, Row, Shard};
+use hil_sim::study::campaign::{self, Campaign, Identity, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -1,14 +1,14 @@
 //! `check`: can a path be flown?
 
 use controller::{Vehicle, VehicleParams};
-use hil_sim::check::Limits;
-use hil_sim::course::{PathSpec, parse_path};
-use hil_sim::plant::VehicleParameters;
-use hil_sim::scenario::{Law, Scenario};
+use hil_sim::describe::course::{PathSpec, parse_path};
+use hil_sim::describe::scenario::{Law, Scenario};
+use hil_sim::study::check::Limits;
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use witness::plant::VehicleParameters;
 
 use super::{Common, Ended, fly};
 

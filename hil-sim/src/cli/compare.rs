@@ -1,7 +1,7 @@
 //! `compare`: four laws against the world.
 
 use clap::Args;
-use hil_sim::compare;
+use hil_sim::study::compare;
 use std::io::{self, Write};
 use std::process::ExitCode;
 

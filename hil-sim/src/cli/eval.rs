@@ -1,6 +1,6 @@
 //! `eval`: the law for other programs, one JSON object a line.
 
-use hil_sim::eval::evaluate;
+use hil_sim::study::eval::evaluate;
 use std::io::{self, BufRead, BufReader, BufWriter, Write};
 use std::process::ExitCode;
 

@@ -1,7 +1,7 @@
 //! `fit`: a closed curve through waypoints.
 
 use clap::Args;
-use hil_sim::fit;
+use hil_sim::study::fit;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;

@@ -1,10 +1,10 @@
 //! `run` and `figures`: fly, print, report.
 
-use hil_sim::batch::{self, Outcome};
-use hil_sim::reference::Reference;
+use hil_sim::describe::reference::Reference;
+use hil_sim::describe::scenario::{self, Scenario};
+use hil_sim::fly::batch::{self, Outcome};
+use hil_sim::fly::run::{Arithmetic, End};
 use hil_sim::report;
-use hil_sim::run::{Arithmetic, End};
-use hil_sim::scenario::{self, Scenario};
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

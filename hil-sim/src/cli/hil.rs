@@ -1,9 +1,9 @@
 //! `hil` and `target`: the controller at the other end of a line, and this program at that end.
 
+use hil_sim::describe::reference::Reference;
+use hil_sim::describe::scenario::FIGURES;
 use hil_sim::hil::{self, Arguments, Flown};
-use hil_sim::reference::Reference;
 use hil_sim::report;
-use hil_sim::scenario::FIGURES;
 use std::fs;
 use std::io::{self, Write};
 

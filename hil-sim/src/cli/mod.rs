@@ -12,8 +12,8 @@ mod policies;
 mod tune;
 
 use clap::{Parser, Subcommand};
-use hil_sim::run::Arithmetic;
-use hil_sim::scenario::{CURVES, FIGURES};
+use hil_sim::describe::scenario::{CURVES, FIGURES};
+use hil_sim::fly::run::Arithmetic;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

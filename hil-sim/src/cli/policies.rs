@@ -1,7 +1,7 @@
 //! `policies`: path following against trajectory tracking.
 
 use clap::Args;
-use hil_sim::compare;
+use hil_sim::study::compare;
 use std::io::{self, Write};
 use std::process::ExitCode;
 

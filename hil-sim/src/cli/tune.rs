@@ -1,8 +1,8 @@
 //! `tune`: poles and observer bandwidths for a scenario.
 
 use clap::Args;
-use hil_sim::scenario::{self, Scenario};
-use hil_sim::tune;
+use hil_sim::describe::scenario::{self, Scenario};
+use hil_sim::study::tune;
 use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;

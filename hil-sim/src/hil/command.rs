@@ -9,9 +9,9 @@ use comfy_table::Table;
 use serde::Serialize;
 
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target};
-use crate::batch::Outcome;
-use crate::run::{self, Arithmetic, End};
-use crate::scenario::Scenario;
+use crate::describe::scenario::Scenario;
+use crate::fly::batch::Outcome;
+use crate::fly::run::{self, Arithmetic, End};
 
 /// Where the target is: one of these.
 #[derive(Args, Clone, Debug)]

@@ -4,9 +4,9 @@ use autopilot::{HARMONICS, Parameter, Parameters};
 use controller::{ApproachLimits, Gains, ObserverParams, TrackGains, Vehicle};
 
 use super::HilError;
-use crate::pilot::{cast, cast_gains, cast_limits, cast_observer, cast_sampling, cast_track_gains};
-use crate::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
-use crate::scenario::{ControllerSpec, Law};
+use crate::describe::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
+use crate::describe::scenario::{ControllerSpec, Law};
+use crate::fly::pilot::{cast, cast_gains, cast_limits, cast_observer, cast_sampling, cast_track_gains};
 
 /// Sets a run of parameters.
 type Set<'a> = &'a mut dyn FnMut(Parameter, &[f32]) -> Result<(), HilError>;

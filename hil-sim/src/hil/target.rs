@@ -4,15 +4,15 @@ use std::time::{Duration, Instant};
 
 use autopilot::{Parameter, Parameters};
 use controller::State;
-use controller::envelope::Margins;
+use controller::flight::envelope::Margins;
 use link::MavMessage;
 use link::dialect::*;
 
 use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
-use crate::pilot::{Answers, Decision, Observed, Telemetry};
-use crate::plant::Input;
-use crate::scenario::{ControllerSpec, Law, Scenario};
+use crate::describe::scenario::{ControllerSpec, Law, Scenario};
+use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
+use witness::plant::Input;
 
 /// A target that is ready to fly.
 pub struct Target {

@@ -4,9 +4,9 @@ use plotters::prelude::*;
 
 use super::plot::{Area, COLOURS, Curve, Drawn, Track, elevation, plan, space, time, time_log};
 use super::{Figure, ReportError};
-use crate::batch::Outcome;
-use crate::plant::{Input, index};
-use crate::run::Sample;
+use crate::fly::batch::Outcome;
+use crate::fly::run::Sample;
+use witness::plant::{Input, index};
 
 /// Most points drawn of a curve: as many as a figure has pixels across.
 const POINTS: usize = 1000;
@@ -282,5 +282,5 @@ fn torque(input: &Input) -> f64 {
 /// Errors of radius (m), p3 (m) and speed (m/s), where a horizontal circle is flown.
 fn against_circle(run: &Outcome, sample: &Sample) -> Option<[f64; 3]> {
     let circle = run.scenario.controller.law.circle()?;
-    Some(crate::metrics::circle_errors(&sample.x, circle))
+    Some(crate::fly::metrics::circle_errors(&sample.x, circle))
 }

@@ -4,8 +4,8 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::Figure;
 use super::table::COLUMNS;
-use crate::batch::Outcome;
-use crate::reference::Reference;
+use crate::describe::reference::Reference;
+use crate::fly::batch::Outcome;
 
 pub(crate) const STYLE: &str = "
 body { font: 16px/1.5 system-ui, sans-serif; color: #1a1a1a; background: #fff; max-width: 1040px; margin: 2rem auto; padding: 0 1rem }

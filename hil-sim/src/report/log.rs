@@ -1,7 +1,7 @@
 //! The CSV file of a flight: one line a logged sample, SI units and radians, empty where there is no command, or no telemetry.
 
-use crate::batch::Outcome;
-use crate::plant::index;
+use crate::fly::batch::Outcome;
+use witness::plant::index;
 
 const COLUMNS: [&str; 50] = [
     "t_s",

@@ -13,8 +13,8 @@ pub use table::table;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::batch::Outcome;
-use crate::reference::Reference;
+use crate::describe::reference::Reference;
+use crate::fly::batch::Outcome;
 use html::Page;
 
 /// A drawn figure.

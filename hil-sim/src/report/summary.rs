@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use crate::batch::Outcome;
-use crate::deviation::Deviation;
-use crate::metrics::Results;
-use crate::reference::Reference;
-use crate::run::End;
+use crate::describe::reference::Reference;
+use crate::fly::batch::Outcome;
+use crate::fly::deviation::Deviation;
+use crate::fly::metrics::Results;
+use crate::fly::run::End;
 
 #[derive(Serialize)]
 struct Summary<'a> {

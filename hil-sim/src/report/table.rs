@@ -2,10 +2,10 @@
 
 use comfy_table::{CellAlignment, Table};
 
-use crate::batch::Outcome;
-use crate::metrics::Results;
-use crate::reference::Reference;
-use crate::run::End;
+use crate::describe::reference::Reference;
+use crate::fly::batch::Outcome;
+use crate::fly::metrics::Results;
+use crate::fly::run::End;
 
 /// How a column's number is written.
 type Format = fn(f64) -> String;

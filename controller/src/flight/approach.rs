@@ -1,0 +1,399 @@
+//! Joining a path from afar: the path starts where the payload is, and slides home.
+//!
+//! At engagement the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law then follows the curve displaced by
+//!
+//! ```text
+//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0
+//! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶      (I the regularized incomplete beta function)
+//! ```
+//!
+//! which starts where the payload is and as fast as it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives zero
+//! at either end, so the displacement asks for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is,
+//! go to the path's along with the slide. T_b and T are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt,
+//! rod angle and thrust, and the slide the one on speed; where it is the snap that limits a brake, it takes somewhat longer. The displacement is
+//! rigid, so this works for any path, in metres, and meets no singularity of the curve's functions on the way.
+
+use model::{OutOfRange, Real, Series, State, Vehicle, Yaw};
+use nalgebra::Vector3;
+
+use crate::law::lift::PositionSeries;
+use crate::path::{Outputs, Path};
+
+/// max |S′|, |S″|, |S‴| and |S⁗| of the profile over x ∈ [0, 1].
+const PEAKS: [f64; 4] = [2.932_617_187_5, 13.176_705_784, 140.765_625, 1_341.111_326];
+
+/// The speed and the yaw need time even where the distance needs none, s.
+const SHORTEST: f64 = 3.0;
+
+/// What an approach may ask of the vehicle, on top of the path itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ApproachLimits<T> {
+    /// Speed of the slide, m/s.
+    pub speed: T,
+    /// Acceleration of the slide, m/s².
+    pub acceleration: T,
+    /// Tilt of the thrust, rad, up to 1.2.
+    pub tilt: T,
+    /// Angle of the rod from the vertical, rad, up to 1.2.
+    pub rod_angle: T,
+    /// Least total thrust, N, below the hover thrust.
+    pub min_thrust: T,
+    /// Largest total thrust, N, above the hover thrust.
+    pub max_thrust: T,
+}
+
+impl<T: Real> ApproachLimits<T> {
+    /// 3 m/s, 1.5 m/s², 20° of tilt and rod angle, thrust within ±30 % of hover.
+    pub fn gentle(vehicle: &Vehicle<T>) -> Self {
+        let hover = vehicle.hover_thrust();
+        Self {
+            speed: T::lit(3.0),
+            acceleration: T::lit(1.5),
+            tilt: T::lit(0.35),
+            rod_angle: T::lit(0.35),
+            min_thrust: hover * T::lit(0.7),
+            max_thrust: hover * T::lit(1.3),
+        }
+    }
+
+    /// The limits as the payload's derivatives have them; an error names the limit that is out of range.
+    ///
+    /// An acceleration a of the payload needs a rod angle of atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a:
+    /// half of the tilt is for either.
+    pub fn pace(&self, vehicle: &Vehicle<T>) -> Result<Pace<T>, OutOfRange<T>> {
+        let hover = vehicle.hover_thrust();
+        OutOfRange::check("speed", self.speed, 0.01, 100.0)?;
+        OutOfRange::check("acceleration", self.acceleration, 0.01, 100.0)?;
+        OutOfRange::check("tilt", self.tilt, 0.01, 1.2)?;
+        OutOfRange::check("rod_angle", self.rod_angle, 0.01, 1.2)?;
+        OutOfRange::within("min_thrust", self.min_thrust, T::zero(), hover * T::lit(0.999))?;
+        OutOfRange::within("max_thrust", self.max_thrust, hover * T::lit(1.001), T::lit(1e6))?;
+
+        let params = vehicle.params();
+        let gravity = params.gravity;
+        let per_mass = vehicle.per_total_mass();
+        let leaning = |angle: T| {
+            let (sin, cos) = angle.sin_cos();
+            gravity * sin / (sin + cos)
+        };
+        let tilting = leaning(self.tilt) * T::lit(0.5);
+        let acceleration = self
+            .acceleration
+            .min(leaning(self.rod_angle))
+            .min(tilting)
+            .min(self.max_thrust * per_mass - gravity)
+            .min(gravity - self.min_thrust * per_mass);
+        let swing = params.uav_mass * per_mass * params.rod_length / gravity;
+        let snap = tilting / swing;
+        let [peak_1, peak_2, peak_3, peak_4] = PEAKS.map(T::lit);
+        let squared = |x: T| x * x;
+        Ok(Pace {
+            brake: [squared(peak_1 / acceleration), squared(peak_3 / (snap * T::lit(SHORTEST))), T::zero()],
+            slide: [squared(peak_1 / self.speed), squared(peak_2 / acceleration), squared(peak_4 / snap)],
+        })
+    }
+}
+
+/// How fast the payload may be moved by an approach: [`ApproachLimits::pace`].
+///
+/// The time T for a motion of size x (a speed to lose, a distance to go) has T² ≥ a x², T⁴ ≥ b x² and T⁸ ≥ c x².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pace<T> {
+    /// a, b, c of the brake: by acceleration, and by snap, of whose three factors T one is taken for [`SHORTEST`].
+    brake: [T; 3],
+    /// a, b, c of the slide: by speed, acceleration and snap.
+    slide: [T; 3],
+}
+
+/// The time T, s, for a motion of size |`x`|, at least [`SHORTEST`].
+#[inline(never)]
+fn duration<T: Real>([a, b, c]: &[T; 3], x: &Vector3<T>) -> T {
+    let squared = x.dot(x);
+    let fourth = (*b * squared).max((*c * squared).sqrt());
+    T::lit(SHORTEST * SHORTEST).max(*a * squared).max(fourth.sqrt()).sqrt()
+}
+
+/// A slide under way, or none.
+#[derive(Clone, Copy, Debug)]
+pub struct Approach<T> {
+    /// D + V T_b/2, m.
+    displacement: Vector3<T>,
+    /// V, m/s.
+    velocity: Vector3<T>,
+    /// (∇h1 × ∇h2)·ρ at p₀.
+    path_det: T,
+    /// 0 − v_d and ψ_d − ψ at engagement.
+    speed: T,
+    yaw: T,
+    elapsed: T,
+    /// T_b and T, s.
+    braking: T,
+    sliding: T,
+}
+
+impl<T: Real> Approach<T> {
+    /// None: the path itself.
+    pub fn none() -> Self {
+        let zero = T::zero();
+        Self {
+            displacement: Vector3::zeros(),
+            velocity: Vector3::zeros(),
+            path_det: T::one(),
+            speed: zero,
+            yaw: zero,
+            elapsed: zero,
+            braking: zero,
+            sliding: zero,
+        }
+    }
+
+    /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
+    pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
+        path.engage(position);
+        Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
+    }
+
+    /// Begins at `state`. `false`, and nothing changed, if no point of the path is found.
+    pub(crate) fn begin<P: Path<T> + ?Sized>(&mut self, path: &mut P, pace: &Pace<T>, state: &State<T>) -> bool {
+        let State { position, velocity, .. } = state;
+        path.engage(position);
+        let Some(Nearest { point, outputs, path_det }) = nearest(path, position) else {
+            return false;
+        };
+        self.elapsed = T::zero();
+        self.path_det = path_det;
+        self.speed = outputs.speed_error.value();
+        self.yaw = (outputs.yaw.value() - Yaw::of(state).angle).wrap_angle();
+        self.braking = duration(&pace.brake, velocity);
+        self.velocity = *velocity;
+        self.displacement = position - point + velocity * (self.braking * T::lit(0.5));
+        self.sliding = duration(&pace.slide, &self.displacement);
+        true
+    }
+
+    #[inline]
+    fn duration(&self) -> T {
+        self.braking + self.sliding
+    }
+
+    /// Whether the path is still displaced.
+    pub fn is_active(&self) -> bool {
+        self.elapsed < self.duration()
+    }
+
+    /// The determinant (∇h1 × ∇h2)·ρ of the path's 3×3 system at the point that was joined; 1 if none was.
+    pub fn path_det(&self) -> T {
+        self.path_det
+    }
+
+    /// Time left, s.
+    pub fn remaining(&self) -> T {
+        (self.duration() - self.elapsed).max(T::zero())
+    }
+
+    /// One control period on.
+    #[inline]
+    pub(crate) fn advance(&mut self, period: T) {
+        if self.is_active() {
+            self.elapsed += period;
+        }
+    }
+
+    /// Takes the displacement of `ahead` s from now out of `position`, if there is one then, and returns what [`fade`](Self::fade) needs.
+    #[inline(always)]
+    pub(crate) fn leave(&self, ahead: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
+        let elapsed = self.elapsed + ahead;
+        (elapsed < self.duration()).then(|| self.slide(elapsed, position))
+    }
+
+    // Apart: a step on the path does without it.
+    #[inline(never)]
+    fn slide(&self, elapsed: T, position: &mut PositionSeries<T>) -> Fading<T> {
+        let is_braking = elapsed < self.braking;
+        let (since, duration) =
+            if is_braking { (elapsed, self.braking) } else { (elapsed - self.braking, self.sliding) };
+        let (mut s, area) = profile(since, duration);
+        if is_braking {
+            let e: Series<T, 7> = s.truncate::<6>().integrate(-area);
+            displace(position, &e, &self.velocity);
+            // The slide's own has yet to begin; and from then on E is 0.
+            s = Series::constant(T::one());
+        }
+        displace(position, &s, &self.displacement);
+        Fading(s)
+    }
+
+    /// Brings speed and yaw to where they are while the displacement is.
+    pub(crate) fn fade(&self, fading: &Fading<T>, outputs: &mut Outputs<T>) {
+        outputs.speed_error.subtract(&fading.0, self.speed);
+        outputs.yaw.subtract(&fading.0, self.yaw);
+    }
+}
+
+/// Takes `series` times `along` away.
+#[inline(never)]
+fn displace<T: Real>(position: &mut PositionSeries<T>, series: &Series<T, 7>, along: &Vector3<T>) {
+    for (coordinate, &along) in position.iter_mut().zip(along) {
+        coordinate.subtract(series, along);
+    }
+}
+
+/// S of the slide, from 1 to 0.
+pub(crate) struct Fading<T>(Series<T, 7>);
+
+/// S(t/`duration`) about t = `elapsed`, from 0 to `duration`, as a series in time, and ∫S from t to `duration`.
+#[inline(never)]
+fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
+    // The recurrence divides by x (1 − x); so near an end all derivatives are next to nothing, and what is left out less.
+    const END: f64 = 1e-6;
+    let half = T::lit(0.5);
+    let rate = T::one() / duration;
+    let x = (elapsed * rate).clamp(T::lit(END), T::lit(1.0 - END));
+    let y = T::one() - x;
+    let xy = x * y;
+    let cube = xy * xy * xy;
+    let sixth = cube * cube;
+
+    // The slope f = −12012 (x y)⁶ has x y f′ = 6 (x y)′ f; x y is a quadratic of time, so each coefficient follows from the two before.
+    let per_xy = T::one() / xy;
+    let first = (y - x) * rate * per_xy;
+    let second = -(rate * rate) * per_xy;
+    let (mut before, mut last) = (T::zero(), sixth * (T::lit(-12012.0) * rate));
+    let mut s = [last; 7];
+    for (s, [by_first, by_second]) in s.iter_mut().skip(2).zip(RECURRENCE) {
+        *s = T::lit(by_first) * first * last + T::lit(by_second) * second * before;
+        (before, last) = (last, *s);
+    }
+
+    // The value by the finite sum of I_y(7, 7) = y⁷ Σ_{j<7} C(6 + j, j) xʲ.
+    let sum = [924.0, 462.0, 210.0, 84.0, 28.0, 7.0, 1.0].iter().fold(T::zero(), |sum, &c| sum * x + T::lit(c));
+    let y2 = y * y;
+    let [value, ..] = &mut s;
+    *value = y2 * y2 * y2 * y * sum;
+    let area = ((y - half) * *value + T::lit(858.0) * sixth * xy) * duration;
+    (Series(s), area)
+}
+
+/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: what of the coefficients before and before that makes S's k-th.
+const RECURRENCE: [[f64; 2]; 5] =
+    [[3.0, 0.0], [5.0 / 3.0, 2.0], [1.0, 11.0 / 6.0], [3.0 / 5.0, 3.0 / 2.0], [1.0 / 3.0, 6.0 / 5.0]];
+
+/// A payload at rest at `point`.
+fn at_rest<T: Real>(point: &Vector3<T>) -> PositionSeries<T> {
+    [point.x, point.y, point.z].map(Series::constant)
+}
+
+/// A point of a path.
+struct Nearest<T> {
+    point: Vector3<T>,
+    /// The outputs there, for a payload at rest.
+    outputs: Outputs<T>,
+    /// (∇h1 × ∇h2)·ρ.
+    path_det: T,
+}
+
+/// A point of the path near `position`: Newton's search on h1 = h2 = 0, across the tangent, with at most 50 steps.
+fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Option<Nearest<T>> {
+    const STEPS: usize = 50;
+    // A step longer than this is cut: far from the curve its functions may be strongly curved.
+    let longest = T::lit(5.0);
+    // On the curve to within what f32 resolves at a hundred metres.
+    let close = T::lit(1e-4);
+    let mut at = at_rest(position);
+    for _ in 0..STEPS {
+        let outputs = path.outputs(&at);
+        let [h1, h2] = &outputs.surfaces;
+        let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);
+        let squared = step.dot(&step);
+        // Where the functions are stationary, as at a circle's centre, any direction is as good as another.
+        let step = if squared.is_finite() {
+            step * (longest / squared.max(longest * longest).sqrt())
+        } else {
+            Vector3::repeat(T::lit(0.1))
+        };
+        for (coordinate, &step) in at.iter_mut().zip(&step) {
+            *coordinate = *coordinate - step;
+        }
+        if squared < close * close {
+            let [x, y, z] = &at;
+            return Some(Nearest { point: Vector3::new(x.value(), y.value(), z.value()), outputs, path_det });
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use model::VehicleParams;
+
+    #[test]
+    fn profile_falls_from_one_to_zero_with_six_flat_derivatives() {
+        // Of a slide of 4 s. Its ends are taken a millionth of it inside, where S has hardly begun: 1716 (1e-6)⁷ from its end.
+        for (elapsed, value) in [(0.0, 1.0), (2.0, 0.5), (4.0, 0.0), (5.0, 0.0)] {
+            let (profile, area) = profile(elapsed, 4.0_f64);
+            assert!((profile.value() - value).abs() < 1e-12, "{elapsed}");
+            assert!(elapsed > 0.0 || (area - 2.0).abs() < 5e-6, "{area}");
+            assert!(elapsed < 4.0 || area.abs() < 1e-12, "{area}");
+        }
+        // The last of them is next to zero rather than zero, by 12012 · 6! · 1e-6 as |S⁽⁶⁾| has peaks of 2e5, all over 4⁶.
+        for elapsed in [0.0, 4.0, 5.0] {
+            for k in 1..=6 {
+                assert!(profile(elapsed, 4.0_f64).0.derivative(k).abs() < 3e-3, "{elapsed} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn profile_series_predicts_the_profile_and_its_integral() {
+        for i in 1..40 {
+            let (elapsed, dt) = (0.1 * f64::from(i), 0.01);
+            let (now, area) = profile(elapsed, 4.0_f64);
+            let (then, area_then) = profile(elapsed + dt, 4.0);
+            // The seventh term: |S⁽⁷⁾| ≤ 7.9e6/T⁷, over 7!.
+            let bound = 7.9e6 / 4.0_f64.powi(7) * dt.powi(7) / 5040.0 + 1e-14;
+            assert!((now.shift(dt).value() - then.value()).abs() <= bound, "{elapsed}");
+            let integral: f64 = now.0.iter().zip(1..).map(|(c, k)| c * dt.powi(k) / f64::from(k)).sum();
+            assert!((area - area_then - integral).abs() <= bound * dt + 1e-14, "{elapsed}");
+        }
+    }
+
+    #[test]
+    fn peaks_are_the_profile_s() {
+        let mut found = [0.0_f64; 4];
+        for i in 0..=100_000 {
+            let (profile, _) = profile(f64::from(i) * 1e-5, 1.0);
+            for (found, k) in found.iter_mut().zip(1..) {
+                *found = found.max(profile.derivative(k).abs());
+            }
+        }
+        for (found, stated) in found.iter().zip(PEAKS) {
+            assert!((found / stated - 1.0).abs() < 1e-6, "{found} against {stated}");
+        }
+    }
+
+    #[test]
+    fn durations_keep_speed_and_acceleration() {
+        let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
+        let limits = ApproachLimits::gentle(&vehicle);
+        let pace = limits.pace(&vehicle).unwrap();
+        let snap = largest_snap(&vehicle, &limits);
+        for size in [0.1, 1.0, 20.0, 50.0] {
+            let along = Vector3::new(0.0, 0.6 * size, 0.8 * size);
+            let (sliding, braking) = (duration(&pace.slide, &along), duration(&pace.brake, &along));
+            let slack = 1.0 + 1e-12;
+            assert!(PEAKS[0] * size / sliding <= limits.speed * slack);
+            assert!(PEAKS[1] * size / sliding.powi(2) <= limits.acceleration * slack);
+            assert!(PEAKS[3] * size / sliding.powi(4) <= snap * slack);
+            assert!(PEAKS[0] * size / braking <= limits.acceleration * slack);
+            assert!(PEAKS[2] * size / braking.powi(3) <= snap * slack);
+        }
+    }
+
+    /// The largest snap: half of the acceleration that the tilt allows, g/(1 + cot), over the swing's (m_Q/M)(L/g).
+    fn largest_snap(vehicle: &Vehicle<f64>, limits: &ApproachLimits<f64>) -> f64 {
+        let params = vehicle.params();
+        let lean = 1.0 / (1.0 + 1.0 / libm::tan(limits.tilt));
+        0.5 * params.gravity * lean * vehicle.total_mass() * params.gravity / (params.uav_mass * params.rod_length)
+    }
+}

@@ -1,0 +1,8 @@
+//! What is to be flown, as text says it: scenarios, paths, formulas, reference numbers.
+
+pub mod course;
+pub mod formula;
+pub mod input;
+pub mod reference;
+pub mod route;
+pub mod scenario;

@@ -1,0 +1,261 @@
+//! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
+
+use controller::flight::envelope::Margins;
+use controller::{
+    ActuatorLimits, Command, Disturbance, Follower, ObserverParams, Real, Sampling, SetupError, State, Tracker,
+    Vector3, Vehicle, VehicleParams,
+};
+
+use crate::describe::course::{ReferenceSpec, Route};
+use crate::describe::scenario::{ControllerSpec, Law};
+use witness::plant::Input;
+
+/// Whatever answers states with commands: a law in this program, or a target at the other end of a link.
+pub trait Answers {
+    /// Starts from a stated ζ, with integrals at zero.
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]);
+
+    /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there will be no more.
+    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision>;
+}
+
+/// A controller at work in the scalar `T`.
+pub enum Pilot<T> {
+    /// Path following.
+    Follow(Box<Follower<T, Route<T>>>),
+    /// Trajectory tracking, with its reference.
+    Track(Box<Tracker<T>>, ReferenceSpec),
+}
+
+/// One answer of a pilot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Decision {
+    /// Thrust and torque for the coming hold.
+    pub input: Input,
+    /// ζ at the sample, m/s²⁺ᵏ.
+    pub zeta: [f64; 4],
+    /// Where it came from; of a target at the other end of a link, with the samples that are logged.
+    pub telemetry: Option<Telemetry>,
+}
+
+/// Where an answer came from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telemetry {
+    /// ξ̃ = ∫(h1, h2, h3) up to the sample; zero for the tracking law, which has none.
+    pub integral: [f64; 3],
+    /// Outputs and derivatives, padded with zeros to the longer law's 20.
+    pub xi: [f64; 20],
+    /// Wanted highest derivatives of the outputs.
+    pub nu: [f64; 4],
+    /// Distances from the singularities.
+    pub margins: Margins<f64>,
+    /// What the observers have found.
+    pub observed: Observed,
+}
+
+/// Disturbances as an operator reads them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Observed {
+    /// On the payload in N, beyond the model's, N; along the rod that on both bodies.
+    pub payload_force: [f64; 3],
+    /// On the UAV in N, across the rod, N.
+    pub uav_force: [f64; 3],
+    /// On the UAV in body axes, N·m.
+    pub torque: [f64; 3],
+    /// The payload's mass that would explain the force along the rod in still air, kg.
+    pub payload_mass: f64,
+}
+
+impl Observed {
+    fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
+        let numbers = |v: Vector3<T>| v.map(T::to_f64).into();
+        Self {
+            payload_force: numbers(found.payload_force(vehicle, rod)),
+            uav_force: numbers(found.uav_force(vehicle, rod)),
+            torque: numbers(found.torque),
+            payload_mass: found.implied_payload_mass(vehicle, rod, lambda).to_f64(),
+        }
+    }
+}
+
+/// The vehicle in another scalar.
+#[must_use]
+pub fn cast<T: Real>(params: &VehicleParams<f64>) -> VehicleParams<T> {
+    VehicleParams {
+        payload_mass: T::lit(params.payload_mass),
+        uav_mass: T::lit(params.uav_mass),
+        rod_length: T::lit(params.rod_length),
+        inertia: params.inertia.map(T::lit),
+        gravity: T::lit(params.gravity),
+    }
+}
+
+/// The follower's gains in another scalar.
+#[must_use]
+pub fn cast_gains<T: Real>(gains: &controller::Gains<f64>) -> controller::Gains<T> {
+    controller::Gains {
+        k1: gains.k1.map(T::lit),
+        k2: gains.k2.map(T::lit),
+        k3: gains.k3.map(T::lit),
+        k4: gains.k4.map(T::lit),
+        integral: gains.integral.map(T::lit),
+    }
+}
+
+/// The tracker's gains in another scalar.
+#[must_use]
+pub fn cast_track_gains<T: Real>(gains: &controller::TrackGains<f64>) -> controller::TrackGains<T> {
+    controller::TrackGains { position: gains.position.map(|row| row.map(T::lit)), yaw: gains.yaw.map(T::lit) }
+}
+
+/// Timing in another scalar.
+#[must_use]
+pub fn cast_sampling<T: Real>(sampling: &Sampling<f64>) -> Sampling<T> {
+    Sampling {
+        period: T::lit(sampling.period),
+        latency: T::lit(sampling.latency),
+        rotor_lag: T::lit(sampling.rotor_lag),
+        look_ahead: sampling.look_ahead,
+    }
+}
+
+/// Observer parameters in another scalar.
+#[must_use]
+pub fn cast_observer<T: Real>(params: &ObserverParams<f64>) -> ObserverParams<T> {
+    ObserverParams {
+        payload_bandwidth: T::lit(params.payload_bandwidth),
+        rod_bandwidth: T::lit(params.rod_bandwidth),
+        torque_bandwidth: T::lit(params.torque_bandwidth),
+        payload_bound: T::lit(params.payload_bound),
+        rod_bound: T::lit(params.rod_bound),
+        torque_bound: T::lit(params.torque_bound),
+    }
+}
+
+/// Limits in another scalar.
+#[must_use]
+pub fn cast_limits<T: Real>(limits: &ActuatorLimits<f64>) -> ActuatorLimits<T> {
+    ActuatorLimits {
+        min_thrust: T::lit(limits.min_thrust),
+        max_thrust: T::lit(limits.max_thrust),
+        max_torque: limits.max_torque.map(T::lit),
+    }
+}
+
+impl<T: Real> Pilot<T> {
+    /// The controller that `spec` describes, at hover.
+    ///
+    /// # Errors
+    /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains unstable.
+    pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
+        let vehicle = Vehicle::new(cast(&spec.vehicle))?;
+        let sampling = cast_sampling(&spec.sampling());
+        let (observer, limits) = (cast_observer(&spec.observer), cast_limits(&spec.limits));
+        Ok(match &spec.law {
+            Law::Follow { path, gains } => {
+                let follower = Follower::new(vehicle, path.build()?, cast_gains(gains), sampling)?;
+                Self::Follow(Box::new(follower.with_observer(&observer)?.with_limits(limits)?))
+            }
+            Law::Track { reference, gains } => {
+                let tracker = Tracker::new(vehicle, cast_track_gains(gains), sampling)?;
+                Self::Track(Box::new(tracker.with_observer(&observer)?.with_limits(limits)?), *reference)
+            }
+        })
+    }
+
+    /// Takes over from whatever applied `applied` until now, without a bump in thrust.
+    pub fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        let applied = Command { thrust: T::lit(applied.thrust), torque: applied.torque.map(T::lit) };
+        match self {
+            Self::Follow(follower) => follower.engage(&state.cast(), applied),
+            Self::Track(tracker, _) => tracker.engage(&state.cast(), applied),
+        }
+    }
+
+    /// The disturbances found up to the last sample.
+    #[must_use]
+    pub fn disturbance(&self) -> Disturbance<f64> {
+        match self {
+            Self::Follow(follower) => follower.disturbance().cast(),
+            Self::Track(tracker, _) => tracker.disturbance().cast(),
+        }
+    }
+
+    /// Starts from a stated ζ, with integrals at zero.
+    pub fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        let (state, zeta) = (state.cast(), zeta.map(T::lit));
+        match self {
+            Self::Follow(follower) => follower.start(&state, zeta),
+            Self::Track(tracker, _) => tracker.start(&state, zeta),
+        }
+    }
+
+    /// The command for the hold that begins at `t_s`, from the state sampled then.
+    #[inline]
+    pub fn step(&mut self, state: &State<f64>, t_s: f64) -> Decision {
+        let state = state.cast();
+        let (zeta, integral) = match self {
+            Self::Follow(follower) => (*follower.zeta(), *follower.integral()),
+            Self::Track(tracker, _) => (*tracker.zeta(), [T::zero(); 3]),
+        };
+        let mut xi = [0.0; 20];
+        let mut fill = |parts: &[&[T]]| {
+            for (slot, value) in xi.iter_mut().zip(parts.iter().copied().flatten()) {
+                *slot = value.to_f64();
+            }
+        };
+        let (command, nu, margins, found, vehicle) = match self {
+            Self::Follow(follower) => {
+                let solution = follower.step(&state);
+                fill(&[&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
+                (solution.command, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
+            }
+            Self::Track(tracker, reference) => {
+                let solution = tracker.step(&state, &reference.at(t_s));
+                let [p1, p2, p3] = &solution.xi.position;
+                fill(&[p1, p2, p3, &solution.xi.yaw]);
+                (solution.command, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
+            }
+        };
+        Decision {
+            input: input(&command),
+            zeta: zeta.map(T::to_f64),
+            telemetry: Some(Telemetry {
+                integral: integral.map(T::to_f64),
+                xi,
+                nu: nu.map(T::to_f64),
+                margins: margins_f64(&margins),
+                observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
+            }),
+        }
+    }
+}
+
+impl<T: Real> Answers for Pilot<T> {
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        Self::start(self, state, zeta);
+    }
+
+    #[inline]
+    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
+        Some(Self::step(self, state, t_s))
+    }
+}
+
+/// A command as the plant takes it.
+pub fn input<T: Real>(command: &Command<T>) -> Input {
+    Input { thrust: command.thrust.to_f64(), torque: command.torque.map(T::to_f64).into() }
+}
+
+/// Margins as f64.
+pub fn margins_f64<T: Real>(margins: &Margins<T>) -> Margins<f64> {
+    Margins {
+        q3: margins.q3.to_f64(),
+        q_b3: margins.q_b3.to_f64(),
+        lambda: margins.lambda.to_f64(),
+        kappa: margins.kappa.to_f64(),
+        path_det: margins.path_det.to_f64(),
+        reach: margins.reach.to_f64(),
+        cos_phi_squared: margins.cos_phi_squared.to_f64(),
+    }
+}

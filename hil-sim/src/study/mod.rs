@@ -1,0 +1,8 @@
+//! Many flights, and what is asked of a path or the law without one.
+
+pub mod campaign;
+pub mod check;
+pub mod compare;
+pub mod eval;
+pub mod fit;
+pub mod tune;

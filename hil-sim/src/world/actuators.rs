@@ -1,0 +1,217 @@
+//! What becomes of a command on its way to the vehicle: link latency, saturation, rotor lag, wrong thrust scale.
+//!
+//! A command acts `latency_s` after it is given, any fraction of a control period included, and then through the rotors'
+//! first-order lag, u̇ = (u_commanded − u)/τ, solved exactly. Saturation stands before the lag (rotors cannot be told more), the scale
+//! after it (air density, battery, worn propellers): thrust = s · u.
+
+use controller::{Command, Vector3};
+use serde::Deserialize;
+use std::collections::VecDeque;
+
+use super::check;
+use super::rotors::Rotors;
+use super::sensors::Window;
+use crate::describe::input::{Invalid, join, within};
+
+/// The actuators of a flight.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Actuators {
+    /// τ of thrust and torque, s, 0 (none) to 0.5.
+    pub lag_s: f64,
+    /// From sample to act, s, 0 to 0.5.
+    pub latency_s: f64,
+    /// What the vehicle gets of the thrust commanded, 0.1 to 2.
+    pub thrust_scale: f64,
+    /// Least and largest thrust that the rotors can be told, N; none if left out.
+    pub thrust_range: Option<[f64; 2]>,
+    /// Largest torque about each body axis, N·m; none if left out.
+    pub max_torque: Option<[f64; 3]>,
+    /// The rotors, each with its limits; ideal ones if left out.
+    pub rotors: Option<Rotors>,
+    /// A time in which there is less thrust to be had: a sagging battery. The law is not told.
+    pub sag: Option<Sag>,
+}
+
+/// Less thrust for a while.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Sag {
+    /// Largest thrust that can be had, N, 0 to 100000.
+    pub max_thrust: f64,
+    /// When.
+    pub during: Window,
+}
+
+impl Default for Actuators {
+    /// Ideal.
+    fn default() -> Self {
+        Self {
+            lag_s: 0.0,
+            latency_s: 0.0,
+            thrust_scale: 1.0,
+            thrust_range: None,
+            max_torque: None,
+            rotors: None,
+            sag: None,
+        }
+    }
+}
+
+impl Actuators {
+    /// Checks every range; `at` is the table's name.
+    ///
+    /// # Errors
+    /// [`Invalid`] names the field.
+    pub fn check(&self, at: &str) -> Result<(), Invalid> {
+        check(at, "lag_s", self.lag_s, 0.0, 0.5)?;
+        check(at, "latency_s", self.latency_s, 0.0, 0.5)?;
+        check(at, "thrust_scale", self.thrust_scale, 0.1, 2.0)?;
+        if let Some([low, high]) = self.thrust_range {
+            check(at, "thrust_range[0]", low, 0.0, 1e5)?;
+            check(at, "thrust_range[1]", high, low, 1e5)?;
+        }
+        if let Some(torque) = self.max_torque {
+            for (axis, limit) in torque.into_iter().enumerate() {
+                within(&join(at, &format!("max_torque[{axis}]")), limit, 0.0..=1e5)?;
+            }
+        }
+        if let Some(sag) = &self.sag {
+            let at = join(at, "sag");
+            check(&at, "max_thrust", sag.max_thrust, 0.0, 1e5)?;
+            sag.during.check(&join(&at, "during"))?;
+        }
+        self.rotors.map_or(Ok(()), |rotors| rotors.check(&join(at, "rotors")))
+    }
+
+    /// What rotors told `command` at `t_s` are able to take of it.
+    fn saturate(&self, t_s: f64, command: &Command<f64>) -> Command<f64> {
+        let most = self.sag.filter(|sag| sag.during.contains(t_s)).map_or(f64::INFINITY, |sag| sag.max_thrust);
+        let thrust =
+            self.thrust_range.map_or(command.thrust, |[low, high]| command.thrust.clamp(low, high)).min(most);
+        let torque = self.max_torque.map_or(command.torque, |limit| {
+            let limit = Vector3::from(limit);
+            command.torque.zip_map(&limit, |torque, limit| torque.clamp(-limit, limit))
+        });
+        let command = Command { thrust, torque };
+        self.rotors.map_or(command, |rotors| rotors.limit(&command))
+    }
+}
+
+/// Commands under way, and the rotors.
+#[derive(Clone, Debug)]
+pub struct ActuatorModel {
+    actuators: Actuators,
+    /// What is yet to come, with the time at which it acts, s.
+    line: VecDeque<(f64, Command<f64>)>,
+    /// What the rotors are told now, and what they give.
+    target: Command<f64>,
+    given: Command<f64>,
+}
+
+/// Times closer than this are the same, s: far below any period, far above the rounding of a day's seconds.
+const INSTANT: f64 = 1e-9;
+
+impl ActuatorModel {
+    /// `actuators` that have given `command` for long.
+    #[must_use]
+    pub fn new(actuators: Actuators, command: Command<f64>) -> Self {
+        let target = actuators.saturate(0.0, &command);
+        Self { actuators, line: VecDeque::new(), target, given: target }
+    }
+
+    /// Takes a command at `t_s`.
+    pub fn push(&mut self, t_s: f64, command: &Command<f64>) {
+        let acts_s = t_s + self.actuators.latency_s;
+        self.line.push_back((acts_s, self.actuators.saturate(acts_s, command)));
+    }
+
+    /// From `t_s` to when the rotors are next told otherwise, or to `end_s`: the length of that piece.
+    pub fn piece(&mut self, t_s: f64, end_s: f64) -> f64 {
+        while let Some((at_s, command)) = self.line.front() {
+            if *at_s > t_s + INSTANT {
+                return if *at_s < end_s - INSTANT { at_s - t_s } else { end_s - t_s };
+            }
+            self.target = *command;
+            self.line.pop_front();
+        }
+        end_s - t_s
+    }
+
+    /// What acts on the vehicle `dt` s after the piece's start at `t_s`.
+    #[must_use]
+    pub fn at(&self, t_s: f64, dt: f64) -> Command<f64> {
+        let mut command = self.lagging(dt);
+        if let Some(rotors) = &self.actuators.rotors {
+            command = rotors.fail(t_s + dt, &command);
+        }
+        command.thrust *= self.actuators.thrust_scale;
+        command
+    }
+
+    /// Ends a piece of `dt` s.
+    pub fn pass(&mut self, dt: f64) {
+        self.given = self.lagging(dt);
+    }
+
+    fn lagging(&self, dt: f64) -> Command<f64> {
+        if self.actuators.lag_s == 0.0 {
+            return self.target;
+        }
+        let kept = libm::exp(-dt / self.actuators.lag_s);
+        Command {
+            thrust: self.target.thrust + (self.given.thrust - self.target.thrust) * kept,
+            torque: self.target.torque + (self.given.torque - self.target.torque) * kept,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn thrust(thrust: f64) -> Command<f64> {
+        Command { thrust, torque: Vector3::zeros() }
+    }
+
+    #[test]
+    fn a_command_acts_after_the_latency_and_approaches_with_the_lag() {
+        let actuators = Actuators { lag_s: 0.05, latency_s: 0.005, thrust_scale: 0.5, ..Actuators::default() };
+        let mut model = ActuatorModel::new(actuators, thrust(10.0));
+        model.push(0.0, &thrust(20.0));
+        // Two periods of 2 ms before it acts, then in the midst of the third.
+        for (start, pieces) in [(0.0, &[0.002][..]), (0.002, &[0.002]), (0.004, &[0.001, 0.001])] {
+            let mut t = start;
+            for wanted in pieces {
+                let piece = model.piece(t, start + 0.002);
+                assert!((piece - wanted).abs() < 1e-12, "{piece} {wanted}");
+                model.pass(piece);
+                t += piece;
+            }
+        }
+        let expected = 0.5 * (20.0 - 10.0 * (-0.001_f64 / 0.05).exp());
+        assert!((model.at(0.0, 0.0).thrust - expected).abs() < 1e-12);
+        assert!((model.at(0.0, 10.0).thrust - 10.0).abs() < 1e-12, "half of what is commanded in the end");
+    }
+
+    #[test]
+    fn a_sag_takes_thrust_in_its_window() {
+        let sag = Some(Sag { max_thrust: 20.0, during: Window { at_s: 1.0, for_s: 2.0 } });
+        let mut model = ActuatorModel::new(Actuators { sag, ..Actuators::default() }, thrust(30.0));
+        for (t_s, wanted) in [(0.9, 30.0), (1.0, 20.0), (2.9, 20.0), (3.0, 30.0)] {
+            model.push(t_s, &thrust(30.0));
+            model.piece(t_s, t_s + 0.002);
+            assert_eq!(model.at(t_s, 0.0).thrust, wanted, "{t_s}");
+        }
+    }
+
+    #[test]
+    fn saturation_stands_before_the_lag() {
+        let actuators =
+            Actuators { thrust_range: Some([3.0, 60.0]), max_torque: Some([1.0, 2.0, 3.0]), ..Actuators::default() };
+        let mut model = ActuatorModel::new(actuators, thrust(30.0));
+        model.push(0.0, &Command { thrust: 100.0, torque: Vector3::new(-5.0, 5.0, 0.5) });
+        model.piece(0.0, 0.002);
+        assert_eq!(model.at(0.0, 0.0), Command { thrust: 60.0, torque: Vector3::new(-1.0, 2.0, 0.5) });
+    }
+}

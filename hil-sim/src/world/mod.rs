@@ -1,0 +1,239 @@
+//! Everything outside the controller: the slung load in its environment, behind its actuators, seen through its sensors.
+//!
+//! A flight calls [`World::read`] and [`World::advance`] in turn, once a control period. What happens is a function of the
+//! [`WorldSpec`], the start and the seed alone.
+//!
+//! What a flight meets beside the slung-load system itself: environment, sensors, actuators. Everything is off unless a scenario
+//! switches it on.
+//!
+//! ```toml
+//! [environment]
+//! payload_force = [0.3, 0.0, 0.0]   # N, in N; uav_force likewise; torque in body axes, N·m
+//! payload_step = { at_s = 20.0, mass = 1.5 }
+//!
+//! [environment.air]
+//! wind = [5.0, 0.0, 0.0]            # m/s, where the air goes
+//! gusts = { speed_at_6m = 5.0, height = 10.0 }
+//! density = 1.225                   # kg/m³
+//! payload_drag_area = 0.01          # Cd A, m²
+//! uav_drag_area = 0.05
+//!
+//! [sensors.position]                # velocity, rod, rod_rate, attitude, body_rate likewise
+//! noise = 0.02                      # standard deviation per sample and axis
+//! bias = [0.0, 0.0, 0.0]
+//! quantum = 0.001
+//! jitter_s = 0.001
+//! freeze = { at_s = 10.0, for_s = 0.5 }      # drop_out, nan likewise
+//!
+//! [actuators]
+//! lag_s = 0.05
+//! latency_s = 0.01
+//! thrust_scale = 0.85
+//! rotors = { layout = "quad-x", arm_m = 0.3, drag_m = 0.02, max_thrust = 15.0, failure = { rotor = 1, at_s = 9.0, effectiveness = 0.0 } }
+//! sag = { max_thrust = 30.9, during = { at_s = 15.0, for_s = 2.0 } }
+//!
+//! [timing]
+//! jitter = 0.1                      # each control period within ±10 %
+//! missed = 0.01                     # probability that the controller is not called
+//! ```
+
+mod actuators;
+mod dryden;
+mod environment;
+pub mod integrate;
+pub mod multibody;
+pub mod random;
+mod rotors;
+mod sensors;
+mod timing;
+
+pub use actuators::{ActuatorModel, Actuators, Sag};
+pub use dryden::{Dryden, Gusts};
+pub use environment::{Air, Environment, PayloadStep, drag};
+pub use rotors::{Layout, RotorFailure, Rotors};
+pub use sensors::{Channel, SensorModel, Sensors, Window};
+pub use timing::Timing;
+
+use controller::{Command, State, Vector3};
+
+use crate::describe::input::{Invalid, within};
+use crate::world::multibody::{Loads, Multibody};
+use crate::world::random::{Purpose, Stream};
+use witness::plant::VehicleParameters;
+
+/// `value` in a range, with the field for an error.
+fn check(at: &str, field: &str, value: f64, low: f64, high: f64) -> Result<(), Invalid> {
+    within(&crate::describe::input::join(at, field), value, low..=high).map(|_| ())
+}
+
+/// What flies, where, and behind what.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorldSpec {
+    /// The vehicle.
+    pub vehicle: VehicleParameters,
+    /// Forces, air, another payload.
+    pub environment: Environment,
+    /// The sensors.
+    pub sensors: Sensors,
+    /// Latency, lag, limits.
+    pub actuators: Actuators,
+    /// The control loop's clock.
+    pub timing: Timing,
+    /// Control period, s.
+    pub period: f64,
+    /// Runge-Kutta steps in a control period.
+    pub substeps: u32,
+}
+
+/// The seed of one flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Seed {
+    /// Of the batch.
+    pub batch: u64,
+    /// The flight's number in it.
+    pub run: u64,
+}
+
+impl Seed {
+    /// The stream for a purpose.
+    #[must_use]
+    pub fn stream(self, purpose: Purpose) -> Stream {
+        Stream::new(self.batch, self.run, purpose)
+    }
+}
+
+/// The world at work.
+#[derive(Clone, Debug)]
+pub struct World {
+    spec: WorldSpec,
+    body: Multibody,
+    actuators: ActuatorModel,
+    sensors: SensorModel,
+    gusts: Option<Dryden>,
+    /// Velocity of the air in N over the running period, m/s.
+    air: Vector3<f64>,
+    /// ½ ρ C_d A of payload and UAV, kg/m.
+    drag: [f64; 2],
+    clock: Stream,
+    t_s: f64,
+}
+
+impl World {
+    /// At time 0 in `state`, with `command` acting for long.
+    #[must_use]
+    pub fn new(spec: &WorldSpec, state: &State<f64>, command: Command<f64>, seed: Seed) -> Self {
+        let body = Multibody::new(spec.vehicle, state);
+        let air = spec.environment.air;
+        let wind = air.map_or(Vector3::zeros(), |air| Vector3::from(air.wind));
+        let gusts = air.and_then(|air| air.gusts);
+        Self {
+            actuators: ActuatorModel::new(spec.actuators, command),
+            sensors: SensorModel::new(spec.sensors, spec.period, &body.state(), seed.stream(Purpose::Sensor)),
+            gusts: gusts.map(|gusts| Dryden::new(&gusts, &wind, spec.period, seed.stream(Purpose::Gust))),
+            air: wind,
+            drag: air.map_or([0.0; 2], |air| {
+                [air.payload_drag_area, air.uav_drag_area].map(|area| 0.5 * air.density * area)
+            }),
+            body,
+            clock: seed.stream(Purpose::Timing),
+            spec: *spec,
+            t_s: 0.0,
+        }
+    }
+
+    /// Time, s.
+    #[must_use]
+    pub fn time_s(&self) -> f64 {
+        self.t_s
+    }
+
+    /// The vehicle as it moves.
+    #[must_use]
+    pub fn body(&self) -> &Multibody {
+        &self.body
+    }
+
+    /// The state now, read by the sensors. Once a period.
+    #[inline]
+    pub fn read(&mut self) -> State<f64> {
+        self.sensors.read(self.t_s, &self.body.state())
+    }
+
+    /// Whether the controller misses this sample. At most once a period.
+    pub fn misses(&mut self) -> bool {
+        self.spec.timing.misses(&mut self.clock)
+    }
+
+    /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities zero; position and yaw stay.
+    pub fn stop(&mut self, yaw: f64) {
+        let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
+        let mut state = State::at_rest(self.body.state().position);
+        state.attitude = controller::Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
+        self.body = Multibody::new(*self.body.vehicle(), &state);
+    }
+
+    /// Passes one control period in which the vehicle is held where it is.
+    pub fn wait(&mut self) {
+        self.t_s += self.spec.period;
+    }
+
+    /// Passes one control period under `command`, given at its start.
+    #[inline]
+    pub fn advance(&mut self, command: &Command<f64>) {
+        self.step_payload();
+        if let Some(gusts) = &mut self.gusts {
+            let mean = self.spec.environment.air.map_or([0.0; 3], |air| air.wind);
+            self.air = Vector3::from(mean) + gusts.step();
+        }
+        self.actuators.push(self.t_s, command);
+        let end_s = self.t_s + self.spec.period * self.spec.timing.stretch(&mut self.clock);
+        // A piece shorter than the clock's rounding ends the period.
+        while end_s - self.t_s > 1e-12 {
+            let piece = self.actuators.piece(self.t_s, end_s);
+            self.fly(piece);
+            self.t_s += piece;
+        }
+        self.t_s = end_s;
+    }
+
+    /// Flies a piece of time in which the rotors are told one thing.
+    #[inline]
+    fn fly(&mut self, piece: f64) {
+        let Environment { payload_force, uav_force, torque, .. } = self.spec.environment;
+        let constant = Loads {
+            payload_force: Vector3::from(payload_force),
+            uav_force: Vector3::from(uav_force),
+            torque: Vector3::from(torque),
+        };
+        let (air, [payload_drag, uav_drag]) = (self.air, self.drag);
+        let loads = |payload: &Vector3<f64>, uav: &Vector3<f64>| {
+            let mut loads = constant;
+            if payload_drag > 0.0 || uav_drag > 0.0 {
+                loads.payload_force += drag(payload_drag, &air, payload);
+                loads.uav_force += drag(uav_drag, &air, uav);
+            }
+            loads
+        };
+        let share = piece / self.spec.period * f64::from(self.spec.substeps);
+        let steps = (share - 1e-6).ceil().max(1.0);
+        let step = piece / steps;
+        for index in 0..steps as u32 {
+            let start = step * f64::from(index);
+            let (actuators, t_s) = (&self.actuators, self.t_s);
+            self.body.advance(step, |t| actuators.at(t_s, start + t), loads);
+        }
+        self.actuators.pass(piece);
+    }
+
+    fn step_payload(&mut self) {
+        if let Some(step) = self.spec.environment.payload_step
+            && self.t_s >= step.at_s - 0.5 * self.spec.period
+            && self.body.vehicle().payload_mass != step.mass
+        {
+            self.body.set_payload_mass(step.mass);
+            if let (Some(area), Some(air)) = (step.drag_area, self.spec.environment.air) {
+                self.drag[0] = 0.5 * air.density * area;
+            }
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! What the sensors make of the state, channel by channel, and what goes wrong with them.
+//!
+//! Each control period a channel's reading comes about in this order: the true value, at a sample time that jitters
+//! uniformly over `jitter_s` before now (linear between two samples); plus `bias`; plus white noise, normal, independent per
+//! sample and axis; rounded to multiples of `quantum`; then frozen at the last reading, dropped out (zeros, as from a driver with an empty
+//! message), or NaN, in the windows given.
+//!
+//! Vectors are read in their own axes and units. A rod is read with the errors of a rotation vector (rad, in N) and attitude
+//! likewise (rad, in body axes); both stay on their manifolds to second order, then exactly, except for `quantum`, which acts on
+//! the components read. The rod's rate is read orthogonal to the rod read.
+
+use controller::{Matrix3, State, Vector3};
+use serde::Deserialize;
+
+use super::check;
+use crate::describe::input::{Invalid, all_within, join};
+use crate::world::random::Stream;
+
+/// A span of time.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Window {
+    /// Its start, s.
+    pub at_s: f64,
+    /// Its length, s.
+    pub for_s: f64,
+}
+
+impl Window {
+    pub(super) fn check(&self, at: &str) -> Result<(), Invalid> {
+        check(at, "at_s", self.at_s, 0.0, 1e5)?;
+        check(at, "for_s", self.for_s, 0.0, 1e5)
+    }
+
+    /// Whether `t_s` lies in it.
+    #[must_use]
+    pub fn contains(&self, t_s: f64) -> bool {
+        (self.at_s..self.at_s + self.for_s).contains(&t_s)
+    }
+}
+
+/// The errors of one channel, in its unit.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Channel {
+    /// Standard deviation per sample and axis, 0 to 100.
+    pub noise: f64,
+    /// Constant error, each axis within ±100.
+    pub bias: [f64; 3],
+    /// Step of the reading, 0 (none) to 100.
+    pub quantum: f64,
+    /// Largest age of a reading, s, 0 to one control period.
+    pub jitter_s: f64,
+    /// When the reading stands still.
+    pub freeze: Option<Window>,
+    /// When there is none, and the driver gives zeros.
+    pub drop_out: Option<Window>,
+    /// When the driver gives NaN.
+    pub nan: Option<Window>,
+}
+
+/// All channels.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Sensors {
+    /// Of the payload in N, m.
+    pub position: Channel,
+    /// Of the payload in N, m/s.
+    pub velocity: Channel,
+    /// Direction of the rod; errors in rad.
+    pub rod: Channel,
+    /// Rate of the rod's direction in N, 1/s.
+    pub rod_rate: Channel,
+    /// Attitude; errors in rad.
+    pub attitude: Channel,
+    /// In body axes, rad/s.
+    pub body_rate: Channel,
+}
+
+impl Channel {
+    fn check(&self, at: &str, period: f64) -> Result<(), Invalid> {
+        check(at, "noise", self.noise, 0.0, 100.0)?;
+        all_within(&join(at, "bias"), self.bias, 100.0)?;
+        check(at, "quantum", self.quantum, 0.0, 100.0)?;
+        check(at, "jitter_s", self.jitter_s, 0.0, period)?;
+        for (name, window) in [("freeze", &self.freeze), ("drop_out", &self.drop_out), ("nan", &self.nan)] {
+            if let Some(window) = window {
+                window.check(&join(at, name))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn is_off(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// The error of this sample, in the channel's unit.
+    fn error(&self, stream: &mut Stream) -> Vector3<f64> {
+        let bias = Vector3::from(self.bias);
+        if self.noise > 0.0 { bias + stream.normals() * self.noise } else { bias }
+    }
+
+    fn round(&self, value: f64) -> f64 {
+        if self.quantum > 0.0 { libm::rint(value / self.quantum) * self.quantum } else { value }
+    }
+
+    /// How far back, as a share of the last period, the sample was taken.
+    fn age(&self, period: f64, stream: &mut Stream) -> f64 {
+        if self.jitter_s > 0.0 { stream.uniform(0.0, self.jitter_s / period) } else { 0.0 }
+    }
+
+    /// Replaces a reading of `N` numbers by what the channel's faults make of it.
+    fn fail<const N: usize>(&self, t_s: f64, reading: [f64; N], last: &[f64; N]) -> [f64; N] {
+        let now = |window: &Option<Window>| window.is_some_and(|window| window.contains(t_s));
+        if now(&self.nan) {
+            [f64::NAN; N]
+        } else if now(&self.drop_out) {
+            [0.0; N]
+        } else if now(&self.freeze) {
+            *last
+        } else {
+            reading
+        }
+    }
+}
+
+impl Sensors {
+    /// The channels by name.
+    #[must_use]
+    pub fn channels(&self) -> [(&'static str, &Channel); 6] {
+        [
+            ("position", &self.position),
+            ("velocity", &self.velocity),
+            ("rod", &self.rod),
+            ("rod_rate", &self.rod_rate),
+            ("attitude", &self.attitude),
+            ("body_rate", &self.body_rate),
+        ]
+    }
+
+    /// Checks every range; `at` is the table's name, `period` the control period in s.
+    ///
+    /// # Errors
+    /// [`Invalid`] names the field.
+    pub fn check(&self, at: &str, period: f64) -> Result<(), Invalid> {
+        self.channels().into_iter().try_for_each(|(name, channel)| channel.check(&join(at, name), period))
+    }
+
+    /// The same standard deviations as the paper's extension was measured with: 2 cm, 3 cm/s, 5 mrad, 20 mrad/s and 10 mrad/s.
+    #[must_use]
+    pub fn noisy() -> Self {
+        let noise = |noise| Channel { noise, ..Channel::default() };
+        Self {
+            position: noise(0.02),
+            velocity: noise(0.03),
+            rod: noise(0.005),
+            rod_rate: noise(0.02),
+            attitude: noise(0.005),
+            body_rate: noise(0.01),
+        }
+    }
+}
+
+/// Sensors at work.
+#[derive(Clone, Debug)]
+pub struct SensorModel {
+    sensors: Sensors,
+    period: f64,
+    stream: Stream,
+    /// The state at the last sample, and what was read then.
+    before: State<f64>,
+    last: State<f64>,
+    perfect: bool,
+}
+
+impl SensorModel {
+    /// `sensors` sampled every `period` s, from a flight that starts at `state`.
+    #[must_use]
+    pub fn new(sensors: Sensors, period: f64, state: &State<f64>, stream: Stream) -> Self {
+        let perfect = sensors.channels().iter().all(|(_, channel)| channel.is_off());
+        Self { sensors, period, stream, before: *state, last: *state, perfect }
+    }
+
+    /// What is read of `state` at `t_s`.
+    pub fn read(&mut self, t_s: f64, state: &State<f64>) -> State<f64> {
+        if self.perfect {
+            return *state;
+        }
+        let Sensors { position, velocity, rod, rod_rate, attitude, body_rate } = self.sensors;
+        let rod_read = {
+            let aged = self.aged(&rod, &state.rod, &{ self.before.rod });
+            let turned = aged + rod.error(&mut self.stream).cross(&aged);
+            let unit = turned / turned.dot(&turned).sqrt();
+            Vector3::from(rod.fail(t_s, unit.map(|x| rod.round(x)).into(), self.last.rod.as_ref()))
+        };
+        let attitude_read = {
+            let age = attitude.age(self.period, &mut self.stream);
+            let aged = state.attitude + (self.before.attitude - state.attitude) * age;
+            let turned = orthonormal(&(aged * turn(&attitude.error(&mut self.stream))));
+            let columns: [[f64; 3]; 3] = turned.map(|x| attitude.round(x)).into();
+            let last: [[f64; 3]; 3] = self.last.attitude.into();
+            let [c1, c2, c3] = columns.map(Vector3::from);
+            let failed = [c1, c2, c3].map(<[f64; 3]>::from);
+            Matrix3::from_columns(&[
+                Vector3::from(attitude.fail(t_s, failed[0], &last[0])),
+                Vector3::from(attitude.fail(t_s, failed[1], &last[1])),
+                Vector3::from(attitude.fail(t_s, failed[2], &last[2])),
+            ])
+        };
+        let across = |rate: Vector3<f64>| rate - rod_read * rod_read.dot(&rate);
+        let read = State {
+            position: self.vector(&position, t_s, |state| &state.position, state),
+            velocity: self.vector(&velocity, t_s, |state| &state.velocity, state),
+            rod: rod_read,
+            rod_rate: across(self.vector(&rod_rate, t_s, |state| &state.rod_rate, state)),
+            attitude: attitude_read,
+            body_rate: self.vector(&body_rate, t_s, |state| &state.body_rate, state),
+        };
+        self.before = *state;
+        self.last = read;
+        read
+    }
+
+    /// The value of a channel at its sample time.
+    fn aged(&mut self, channel: &Channel, now: &Vector3<f64>, before: &Vector3<f64>) -> Vector3<f64> {
+        let age = channel.age(self.period, &mut self.stream);
+        now + (before - now) * age
+    }
+
+    fn vector(
+        &mut self,
+        channel: &Channel,
+        t_s: f64,
+        part: fn(&State<f64>) -> &Vector3<f64>,
+        state: &State<f64>,
+    ) -> Vector3<f64> {
+        let before = *part(&self.before);
+        let value = self.aged(channel, part(state), &before) + channel.error(&mut self.stream);
+        let rounded = value.map(|x| channel.round(x));
+        Vector3::from(channel.fail(t_s, rounded.into(), part(&self.last).as_ref()))
+    }
+}
+
+/// 1 + v^: orthonormal to |v|².
+fn turn(v: &Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::new(1.0, -v.z, v.y, v.z, 1.0, -v.x, -v.y, v.x, 1.0)
+}
+
+/// The columns made orthonormal, the first two alike (Gram and Schmidt prefer one), the third their product.
+fn orthonormal(r: &Matrix3<f64>) -> Matrix3<f64> {
+    let unit = |v: Vector3<f64>| v / v.dot(&v).sqrt();
+    let (c1, c2): (Vector3<f64>, Vector3<f64>) = (unit(r.column(0).into()), unit(r.column(1).into()));
+    let (sum, difference) = (unit(c1 + c2), unit(c1 - c2));
+    let half = 0.5_f64.sqrt();
+    let (c1, c2) = ((sum + difference) * half, (sum - difference) * half);
+    Matrix3::from_columns(&[c1, c2, c1.cross(&c2)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::random::Purpose;
+
+    fn state() -> State<f64> {
+        let mut state = State::at_rest(Vector3::new(1.0, 2.0, -10.0));
+        state.velocity = Vector3::new(0.5, -0.25, 0.125);
+        state
+    }
+
+    fn model(sensors: Sensors) -> SensorModel {
+        SensorModel::new(sensors, 0.002, &state(), Stream::new(5, 0, Purpose::Sensor))
+    }
+
+    #[test]
+    fn without_errors_the_state_is_read() {
+        assert_eq!(model(Sensors::default()).read(0.0, &state()), state());
+    }
+
+    #[test]
+    fn noise_has_its_deviation_and_keeps_the_manifolds() {
+        let mut model = model(Sensors::noisy());
+        let truth = state();
+        let count = 20_000;
+        let mut squares = [0.0; 6];
+        for i in 0..count {
+            let read = model.read(0.002 * f64::from(i), &truth);
+            assert!((read.rod.dot(&read.rod) - 1.0).abs() < 1e-15 * 10.0);
+            assert!((read.attitude * read.attitude.transpose() - Matrix3::identity()).amax() < 1e-14);
+            assert!(read.rod.dot(&read.rod_rate).abs() < 1e-15);
+            let differences = [
+                read.position.x - truth.position.x,
+                read.velocity.y - truth.velocity.y,
+                read.rod.x - truth.rod.x,
+                read.rod_rate.y - truth.rod_rate.y,
+                read.attitude.m32,
+                read.body_rate.z,
+            ];
+            for (square, difference) in squares.iter_mut().zip(differences) {
+                *square += difference * difference / f64::from(count);
+            }
+        }
+        for (square, deviation) in squares.iter().zip([0.02, 0.03, 0.005, 0.02, 0.005, 0.01]) {
+            // Five standard errors of a deviation from 20,000 values: 5/√40000.
+            assert!((square.sqrt() / deviation - 1.0).abs() < 0.025, "{square} {deviation}");
+        }
+    }
+
+    #[test]
+    fn faults_act_in_their_windows() {
+        let window = Some(Window { at_s: 1.0, for_s: 1.0 });
+        let channel = |f: fn(&mut Channel, Option<Window>)| {
+            let mut channel = Channel { noise: 0.1, ..Channel::default() };
+            f(&mut channel, window);
+            Sensors { position: channel, ..Sensors::default() }
+        };
+        let mut frozen = model(channel(|c, w| c.freeze = w));
+        let first = frozen.read(0.9, &state()).position;
+        assert_eq!(frozen.read(1.0, &state()).position, first);
+        assert_eq!(frozen.read(1.9, &state()).position, first);
+        assert_ne!(frozen.read(2.0, &state()).position, first);
+        let mut dropped = model(channel(|c, w| c.drop_out = w));
+        assert_eq!(dropped.read(1.5, &state()).position, Vector3::zeros());
+        let mut nan = model(channel(|c, w| c.nan = w));
+        assert!(nan.read(1.5, &state()).position.x.is_nan() && nan.read(2.5, &state()).position.x.is_finite());
+    }
+
+    #[test]
+    fn readings_are_multiples_of_the_quantum_with_their_bias() {
+        let channel = Channel { quantum: 0.25, bias: [0.3, 0.0, 0.0], ..Channel::default() };
+        let read = model(Sensors { velocity: channel, ..Sensors::default() }).read(0.0, &state());
+        assert_eq!(read.velocity, Vector3::new(0.75, -0.25, 0.0));
+        let channel = Channel { jitter_s: 0.002, ..Channel::default() };
+        let mut jittering = model(Sensors { position: channel, ..Sensors::default() });
+        let mut later = state();
+        later.position.x += 1.0;
+        let x = jittering.read(0.0, &later).position.x;
+        assert!(x > 1.0 && x < 2.0, "between the two samples: {x}");
+    }
+}

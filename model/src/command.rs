@@ -1,0 +1,45 @@
+//! The vehicle's input: total thrust and torque.
+
+use nalgebra::Vector3;
+
+use crate::scalar::Real;
+
+/// Thrust and torque for the coming hold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command<T> {
+    /// Total thrust along −b3, N.
+    pub thrust: T,
+    /// Torque in body axes, N·m.
+    pub torque: Vector3<T>,
+}
+
+impl<T: Real> Command<T> {
+    /// No thrust, no torque.
+    pub fn zero() -> Self {
+        Self { thrust: T::zero(), torque: Vector3::zeros() }
+    }
+
+    /// Component by component, N and N·m.
+    #[inline]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self { thrust: self.thrust + other.thrust, torque: self.torque + other.torque }
+    }
+
+    /// Component by component, N and N·m.
+    #[inline]
+    pub fn minus(&self, other: &Self) -> Self {
+        Self { thrust: self.thrust - other.thrust, torque: self.torque - other.torque }
+    }
+
+    /// No infinity, no NaN.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        (self.thrust + self.torque.x + self.torque.y + self.torque.z).is_finite()
+    }
+
+    /// All components times `factor`.
+    #[inline]
+    pub fn times(&self, factor: T) -> Self {
+        Self { thrust: self.thrust * factor, torque: self.torque * factor }
+    }
+}

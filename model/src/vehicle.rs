@@ -1,0 +1,144 @@
+//! The slung-load vehicle's parameters: checked once, then trusted.
+
+use nalgebra::Vector3;
+
+use crate::error::OutOfRange;
+use crate::scalar::Real;
+
+/// What the law has to know of the vehicle, SI units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VehicleParams<T> {
+    /// Payload mass m_L, kg.
+    pub payload_mass: T,
+    /// UAV mass m_Q without the payload, kg.
+    pub uav_mass: T,
+    /// Rod (cable) length L from the UAV's centre of mass to the payload, m.
+    pub rod_length: T,
+    /// Principal moments of inertia J of the UAV in body axes, kg·m².
+    pub inertia: [T; 3],
+    /// Gravity g along +n3 (down), m/s².
+    pub gravity: T,
+}
+
+impl<T: Real> Default for VehicleParams<T> {
+    /// The paper's Table I with g = 9.81 m/s².
+    fn default() -> Self {
+        Self {
+            payload_mass: T::lit(0.5),
+            uav_mass: T::lit(2.5),
+            rod_length: T::lit(2.0),
+            inertia: [0.03, 0.03, 0.05].map(T::lit),
+            gravity: T::lit(9.81),
+        }
+    }
+}
+
+/// A vehicle whose parameters are in range, with the constants the law derives from them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vehicle<T> {
+    params: VehicleParams<T>,
+    /// m_Q L, kg·m: thrust is κ m_Q L.
+    thrust_per_kappa: T,
+    /// 1/(m_Q L).
+    kappa_per_thrust: T,
+    /// c = M/(m_Q L), 1/m.
+    coupling: T,
+    /// 1/M, 1/kg.
+    per_total_mass: T,
+    /// 1/c.
+    inverse_coupling: T,
+    /// M, kg.
+    total_mass: T,
+    /// M g, N.
+    hover_thrust: T,
+    /// J, kg·m².
+    inertia: Vector3<T>,
+    /// J⁻¹.
+    inverse_inertia: Vector3<T>,
+}
+
+impl<T: Real> Vehicle<T> {
+    /// Checks every parameter; an error names the first that is out of range.
+    pub fn new(params: VehicleParams<T>) -> Result<Self, OutOfRange<T>> {
+        OutOfRange::check("payload_mass", params.payload_mass, 1e-3, 1e3)?;
+        OutOfRange::check("uav_mass", params.uav_mass, 1e-2, 1e3)?;
+        OutOfRange::check("rod_length", params.rod_length, 0.05, 100.0)?;
+        let [j1, j2, j3] = params.inertia;
+        OutOfRange::check("inertia[0]", j1, 1e-6, 1e3)?;
+        OutOfRange::check("inertia[1]", j2, 1e-6, 1e3)?;
+        OutOfRange::check("inertia[2]", j3, 1e-6, 1e3)?;
+        OutOfRange::check("gravity", params.gravity, 0.1, 30.0)?;
+
+        let arm = params.uav_mass * params.rod_length;
+        let total = params.uav_mass + params.payload_mass;
+        Ok(Self {
+            params,
+            thrust_per_kappa: arm,
+            kappa_per_thrust: T::one() / arm,
+            coupling: total / arm,
+            per_total_mass: T::one() / total,
+            inverse_coupling: arm / total,
+            total_mass: total,
+            hover_thrust: total * params.gravity,
+            inertia: Vector3::from(params.inertia),
+            inverse_inertia: Vector3::from(params.inertia.map(|j| T::one() / j)),
+        })
+    }
+
+    /// The parameters it was made from.
+    pub fn params(&self) -> &VehicleParams<T> {
+        &self.params
+    }
+
+    /// M = m_Q + m_L, kg.
+    pub fn total_mass(&self) -> T {
+        self.total_mass
+    }
+
+    /// The thrust that balances gravity at rest, M g, N.
+    pub fn hover_thrust(&self) -> T {
+        self.hover_thrust
+    }
+
+    /// m_Q L, kg·m: thrust is κ m_Q L.
+    #[inline(always)]
+    pub fn thrust_per_kappa(&self) -> T {
+        self.thrust_per_kappa
+    }
+
+    /// 1/(m_Q L), 1/(kg·m).
+    #[inline(always)]
+    pub fn kappa_per_thrust(&self) -> T {
+        self.kappa_per_thrust
+    }
+
+    /// c = M/(m_Q L), 1/m.
+    #[inline(always)]
+    pub fn coupling(&self) -> T {
+        self.coupling
+    }
+
+    /// 1/c, m.
+    #[inline(always)]
+    pub fn inverse_coupling(&self) -> T {
+        self.inverse_coupling
+    }
+
+    /// 1/M, 1/kg.
+    #[inline(always)]
+    pub fn per_total_mass(&self) -> T {
+        self.per_total_mass
+    }
+
+    /// J, principal moments in body axes, kg·m².
+    #[inline(always)]
+    pub fn inertia(&self) -> &Vector3<T> {
+        &self.inertia
+    }
+
+    /// J⁻¹, 1/(kg·m²).
+    #[inline(always)]
+    pub fn inverse_inertia(&self) -> &Vector3<T> {
+        &self.inverse_inertia
+    }
+}
