@@ -37,6 +37,12 @@ impl<T: Real> Command<T> {
         (self.thrust + self.torque.x + self.torque.y + self.torque.z).is_finite()
     }
 
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Command<U> {
+        Command { thrust: self.thrust.cast(), torque: self.torque.map(T::cast) }
+    }
+
     /// All components times `factor`.
     #[inline]
     pub fn times(&self, factor: T) -> Self {

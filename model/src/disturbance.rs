@@ -34,7 +34,7 @@ impl<T: Real> Disturbance<T> {
 
     /// The same in another scalar, rounded to nearest. Host-side use.
     pub fn cast<U: Real>(&self) -> Disturbance<U> {
-        let vector = |v: &Vector3<T>| v.map(|x| U::lit(x.to_f64()));
+        let vector = |v: &Vector3<T>| v.map(T::cast);
         Disturbance {
             payload: vector(&self.payload),
             rod: vector(&self.rod),

@@ -29,6 +29,14 @@ impl<T: Real> OutOfRange<T> {
     }
 }
 
+impl<T: Real> OutOfRange<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> OutOfRange<U> {
+        OutOfRange { field: self.field, value: self.value.cast(), min: self.min.cast(), max: self.max.cast() }
+    }
+}
+
 impl<T: Real> fmt::Display for OutOfRange<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} = {} is outside {} to {}", self.field, self.value, self.min, self.max)

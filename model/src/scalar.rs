@@ -66,6 +66,10 @@ pub trait Real:
     fn lit(value: f64) -> Self;
     /// The value as `f64`, exact. Host-side use: the target has no double precision unit.
     fn to_f64(self) -> f64;
+    /// The value in another scalar, rounded to nearest. Host-side use.
+    fn cast<U: Real>(self) -> U {
+        U::lit(self.to_f64())
+    }
     /// `|x|`.
     fn abs(self) -> Self;
     /// Square root, correctly rounded; NaN below zero.

@@ -150,13 +150,13 @@ impl<T: Real> State<T> {
 
     /// The same state in another scalar, rounded to nearest. Host-side use.
     pub fn cast<U: Real>(&self) -> State<U> {
-        let vector = |v: &Vector3<T>| v.map(|x| U::lit(x.to_f64()));
+        let vector = |v: &Vector3<T>| v.map(T::cast);
         State {
             position: vector(&self.position),
             velocity: vector(&self.velocity),
             rod: vector(&self.rod),
             rod_rate: vector(&self.rod_rate),
-            attitude: self.attitude.map(|x| U::lit(x.to_f64())),
+            attitude: self.attitude.map(T::cast),
             body_rate: vector(&self.body_rate),
         }
     }

@@ -33,6 +33,20 @@ impl<T: Real> Default for VehicleParams<T> {
     }
 }
 
+impl<T: Real> VehicleParams<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> VehicleParams<U> {
+        VehicleParams {
+            payload_mass: self.payload_mass.cast(),
+            uav_mass: self.uav_mass.cast(),
+            rod_length: self.rod_length.cast(),
+            inertia: self.inertia.map(T::cast),
+            gravity: self.gravity.cast(),
+        }
+    }
+}
+
 /// A vehicle whose parameters are in range, with the constants the law derives from them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vehicle<T> {

@@ -21,6 +21,22 @@ pub struct Margins<T> {
     pub cos_phi_squared: T,
 }
 
+impl<T: Real> Margins<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Margins<U> {
+        Margins {
+            q3: self.q3.cast(),
+            q_b3: self.q_b3.cast(),
+            lambda: self.lambda.cast(),
+            kappa: self.kappa.cast(),
+            path_det: self.path_det.cast(),
+            reach: self.reach.cast(),
+            cos_phi_squared: self.cos_phi_squared.cast(),
+        }
+    }
+}
+
 /// Which margin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -31,6 +31,18 @@ pub struct Gains<T> {
 }
 
 impl<T: Real> Gains<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Gains<U> {
+        Gains {
+            k1: self.k1.map(T::cast),
+            k2: self.k2.map(T::cast),
+            k3: self.k3.map(T::cast),
+            k4: self.k4.map(T::cast),
+            integral: self.integral.map(T::cast),
+        }
+    }
+
     /// `Ok` if every closed loop is stable, integral action included.
     pub fn check(&self) -> Result<(), GainError<T>> {
         gains::check::<_, 6, 7>(1, &self.k1, self.integral[0])?;
@@ -168,6 +180,17 @@ pub enum SetupError<T> {
     Range(OutOfRange<T>),
     /// The gains do not make a stable loop.
     Gains(GainError<T>),
+}
+
+impl<T: Real> SetupError<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> SetupError<U> {
+        match self {
+            Self::Range(error) => SetupError::Range(error.cast()),
+            Self::Gains(error) => SetupError::Gains(error.cast()),
+        }
+    }
 }
 
 impl<T> From<OutOfRange<T>> for SetupError<T> {

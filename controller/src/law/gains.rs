@@ -56,6 +56,21 @@ pub enum GainError<T> {
     },
 }
 
+impl<T: Real> GainError<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> GainError<U> {
+        match *self {
+            Self::PoleCount { expected, given } => GainError::PoleCount { expected, given },
+            Self::UnstablePole { re } => GainError::UnstablePole { re: re.cast() },
+            Self::NotHurwitz { output } => GainError::NotHurwitz { output },
+            Self::Integral { output, value, limit } => {
+                GainError::Integral { output, value: value.cast(), limit: limit.cast() }
+            }
+        }
+    }
+}
+
 impl<T: Real> fmt::Display for GainError<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

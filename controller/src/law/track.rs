@@ -24,6 +24,12 @@ pub struct TrackGains<T> {
 }
 
 impl<T: Real> TrackGains<T> {
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> TrackGains<U> {
+        TrackGains { position: self.position.map(|row| row.map(T::cast)), yaw: self.yaw.map(T::cast) }
+    }
+
     /// `Ok` if every closed loop is stable.
     pub fn check(&self) -> Result<(), GainError<T>> {
         for (output, k) in (1..).zip(&self.position) {

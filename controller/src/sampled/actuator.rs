@@ -34,6 +34,16 @@ impl<T: Real> ActuatorLimits<T> {
         let far = T::lit(1e6);
         Self { min_thrust: -far, max_thrust: far, max_torque: [far; 3] }
     }
+
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> ActuatorLimits<U> {
+        ActuatorLimits {
+            min_thrust: self.min_thrust.cast(),
+            max_thrust: self.max_thrust.cast(),
+            max_torque: self.max_torque.map(T::cast),
+        }
+    }
 }
 
 impl<T: Real> Actuation<T> for ActuatorLimits<T> {

@@ -57,6 +57,19 @@ impl<T: Real> ObserverParams<T> {
         }
     }
 
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> ObserverParams<U> {
+        ObserverParams {
+            payload_bandwidth: self.payload_bandwidth.cast(),
+            rod_bandwidth: self.rod_bandwidth.cast(),
+            torque_bandwidth: self.torque_bandwidth.cast(),
+            payload_bound: self.payload_bound.cast(),
+            rod_bound: self.rod_bound.cast(),
+            torque_bound: self.torque_bound.cast(),
+        }
+    }
+
     fn check(&self) -> Result<(), OutOfRange<T>> {
         OutOfRange::check("payload_bandwidth", self.payload_bandwidth, 0.0, 100.0)?;
         OutOfRange::check("rod_bandwidth", self.rod_bandwidth, 0.0, 100.0)?;

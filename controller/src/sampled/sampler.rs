@@ -35,6 +35,17 @@ impl<T: Real> Sampling<T> {
         Self { period, latency: T::zero(), rotor_lag: T::zero(), look_ahead: true }
     }
 
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Sampling<U> {
+        Sampling {
+            period: self.period.cast(),
+            latency: self.latency.cast(),
+            rotor_lag: self.rotor_lag.cast(),
+            look_ahead: self.look_ahead,
+        }
+    }
+
     fn check(&self) -> Result<(), OutOfRange<T>> {
         OutOfRange::check("period", self.period, 1e-4, 0.2)?;
         OutOfRange::check("latency", self.latency, 0.0, 0.5)?;

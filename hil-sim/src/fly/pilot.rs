@@ -1,10 +1,7 @@
 //! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
 
 use controller::flight::envelope::Margins;
-use controller::{
-    ActuatorLimits, Command, Disturbance, Follower, ObserverParams, Real, Sampling, SetupError, State, Tracker,
-    Vector3, Vehicle, VehicleParams,
-};
+use controller::{Command, Disturbance, Follower, Real, SetupError, State, Tracker, Vector3, Vehicle};
 
 use crate::describe::course::{ReferenceSpec, Route};
 use crate::describe::scenario::{ControllerSpec, Law};
@@ -78,86 +75,22 @@ impl Observed {
     }
 }
 
-/// The vehicle in another scalar.
-#[must_use]
-pub fn cast<T: Real>(params: &VehicleParams<f64>) -> VehicleParams<T> {
-    VehicleParams {
-        payload_mass: T::lit(params.payload_mass),
-        uav_mass: T::lit(params.uav_mass),
-        rod_length: T::lit(params.rod_length),
-        inertia: params.inertia.map(T::lit),
-        gravity: T::lit(params.gravity),
-    }
-}
-
-/// The follower's gains in another scalar.
-#[must_use]
-pub fn cast_gains<T: Real>(gains: &controller::Gains<f64>) -> controller::Gains<T> {
-    controller::Gains {
-        k1: gains.k1.map(T::lit),
-        k2: gains.k2.map(T::lit),
-        k3: gains.k3.map(T::lit),
-        k4: gains.k4.map(T::lit),
-        integral: gains.integral.map(T::lit),
-    }
-}
-
-/// The tracker's gains in another scalar.
-#[must_use]
-pub fn cast_track_gains<T: Real>(gains: &controller::TrackGains<f64>) -> controller::TrackGains<T> {
-    controller::TrackGains { position: gains.position.map(|row| row.map(T::lit)), yaw: gains.yaw.map(T::lit) }
-}
-
-/// Timing in another scalar.
-#[must_use]
-pub fn cast_sampling<T: Real>(sampling: &Sampling<f64>) -> Sampling<T> {
-    Sampling {
-        period: T::lit(sampling.period),
-        latency: T::lit(sampling.latency),
-        rotor_lag: T::lit(sampling.rotor_lag),
-        look_ahead: sampling.look_ahead,
-    }
-}
-
-/// Observer parameters in another scalar.
-#[must_use]
-pub fn cast_observer<T: Real>(params: &ObserverParams<f64>) -> ObserverParams<T> {
-    ObserverParams {
-        payload_bandwidth: T::lit(params.payload_bandwidth),
-        rod_bandwidth: T::lit(params.rod_bandwidth),
-        torque_bandwidth: T::lit(params.torque_bandwidth),
-        payload_bound: T::lit(params.payload_bound),
-        rod_bound: T::lit(params.rod_bound),
-        torque_bound: T::lit(params.torque_bound),
-    }
-}
-
-/// Limits in another scalar.
-#[must_use]
-pub fn cast_limits<T: Real>(limits: &ActuatorLimits<f64>) -> ActuatorLimits<T> {
-    ActuatorLimits {
-        min_thrust: T::lit(limits.min_thrust),
-        max_thrust: T::lit(limits.max_thrust),
-        max_torque: limits.max_torque.map(T::lit),
-    }
-}
-
 impl<T: Real> Pilot<T> {
     /// The controller that `spec` describes, at hover.
     ///
     /// # Errors
     /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains unstable.
     pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
-        let vehicle = Vehicle::new(cast(&spec.vehicle))?;
-        let sampling = cast_sampling(&spec.sampling());
-        let (observer, limits) = (cast_observer(&spec.observer), cast_limits(&spec.limits));
+        let vehicle = Vehicle::new(spec.vehicle.cast())?;
+        let sampling = spec.sampling().cast();
+        let (observer, limits) = (spec.observer.cast(), spec.limits.cast());
         Ok(match &spec.law {
             Law::Follow { path, gains } => {
-                let follower = Follower::new(vehicle, path.build()?, cast_gains(gains), sampling)?;
+                let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?;
                 Self::Follow(Box::new(follower.with_observer(&observer)?.with_limits(limits)?))
             }
             Law::Track { reference, gains } => {
-                let tracker = Tracker::new(vehicle, cast_track_gains(gains), sampling)?;
+                let tracker = Tracker::new(vehicle, gains.cast(), sampling)?;
                 Self::Track(Box::new(tracker.with_observer(&observer)?.with_limits(limits)?), *reference)
             }
         })
@@ -165,7 +98,7 @@ impl<T: Real> Pilot<T> {
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
     pub fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        let applied = Command { thrust: T::lit(applied.thrust), torque: applied.torque.map(T::lit) };
+        let applied = applied.cast();
         match self {
             Self::Follow(follower) => follower.engage(&state.cast(), applied),
             Self::Track(tracker, _) => tracker.engage(&state.cast(), applied),
@@ -224,7 +157,7 @@ impl<T: Real> Pilot<T> {
                 integral: integral.map(T::to_f64),
                 xi,
                 nu: nu.map(T::to_f64),
-                margins: margins_f64(&margins),
+                margins: margins.cast(),
                 observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
             }),
         }
@@ -245,17 +178,4 @@ impl<T: Real> Answers for Pilot<T> {
 /// A command as the plant takes it.
 pub fn input<T: Real>(command: &Command<T>) -> Input {
     Input { thrust: command.thrust.to_f64(), torque: command.torque.map(T::to_f64).into() }
-}
-
-/// Margins as f64.
-pub fn margins_f64<T: Real>(margins: &Margins<T>) -> Margins<f64> {
-    Margins {
-        q3: margins.q3.to_f64(),
-        q_b3: margins.q_b3.to_f64(),
-        lambda: margins.lambda.to_f64(),
-        kappa: margins.kappa.to_f64(),
-        path_det: margins.path_det.to_f64(),
-        reach: margins.reach.to_f64(),
-        cos_phi_squared: margins.cos_phi_squared.to_f64(),
-    }
 }

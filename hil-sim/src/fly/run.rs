@@ -5,7 +5,7 @@
 //! moves nothing.
 
 use controller::Trapped;
-use controller::{Command, Real, SetupError, State, Vector3};
+use controller::{Command, SetupError, State, Vector3};
 use cpu_time::ThreadTime;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -90,12 +90,12 @@ pub fn fly(scenario: &Scenario, options: Options<'_>) -> Result<Flight, SetupErr
     let twin = if options.twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
     Ok(match options.arithmetic {
         Arithmetic::F32 => {
-            let mut pilot = Pilot::<f32>::new(&scenario.controller).map_err(widen)?;
+            let mut pilot = Pilot::<f32>::new(&scenario.controller).map_err(|error| error.cast())?;
             fly_with(scenario, &mut pilot, twin, options)
         }
         Arithmetic::F64 => fly_with(scenario, &mut Pilot::<f64>::new(&scenario.controller)?, twin, options),
         Arithmetic::Trapped => {
-            let mut pilot = Pilot::<Trapped>::new(&scenario.controller).map_err(widen)?;
+            let mut pilot = Pilot::<Trapped>::new(&scenario.controller).map_err(|error| error.cast())?;
             fly_with(scenario, &mut pilot, twin, options)
         }
     })
@@ -224,25 +224,4 @@ fn fly_with<A: Answers>(
 
 fn is_finite(input: &Input) -> bool {
     input.thrust.is_finite() && input.torque.iter().all(|value| value.is_finite())
-}
-
-/// A controller's error in f64, exact.
-fn widen<T: Real>(error: SetupError<T>) -> SetupError<f64> {
-    use controller::GainError;
-    match error {
-        SetupError::Range(e) => SetupError::Range(controller::OutOfRange {
-            field: e.field,
-            value: e.value.to_f64(),
-            min: e.min.to_f64(),
-            max: e.max.to_f64(),
-        }),
-        SetupError::Gains(e) => SetupError::Gains(match e {
-            GainError::PoleCount { expected, given } => GainError::PoleCount { expected, given },
-            GainError::UnstablePole { re } => GainError::UnstablePole { re: re.to_f64() },
-            GainError::NotHurwitz { output } => GainError::NotHurwitz { output },
-            GainError::Integral { output, value, limit } => {
-                GainError::Integral { output, value: value.to_f64(), limit: limit.to_f64() }
-            }
-        }),
-    }
 }

@@ -6,7 +6,6 @@ use controller::{ApproachLimits, Gains, ObserverParams, TrackGains, Vehicle};
 use super::HilError;
 use crate::describe::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
-use crate::fly::pilot::{cast, cast_gains, cast_limits, cast_observer, cast_sampling, cast_track_gains};
 
 /// Sets a run of parameters.
 type Set<'a> = &'a mut dyn FnMut(Parameter, &[f32]) -> Result<(), HilError>;
@@ -23,14 +22,14 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
             HilError::Unsupported(format!("{values:?} is out of the range of the parameters from {first:?} on"))
         })
     };
-    let vehicle = cast::<f32>(&spec.vehicle);
+    let vehicle = spec.vehicle.cast::<f32>();
     set(Parameter::PayloadMass, &[vehicle.payload_mass, vehicle.uav_mass, vehicle.rod_length])?;
     set(Parameter::Inertia1, &vehicle.inertia)?;
     set(Parameter::Gravity, &[vehicle.gravity])?;
-    let sampling = cast_sampling::<f32>(&spec.sampling());
+    let sampling = spec.sampling().cast::<f32>();
     set(Parameter::Period, &[sampling.period, sampling.latency, sampling.rotor_lag, on(sampling.look_ahead)])?;
-    set_observer(&cast_observer(&spec.observer), &mut set)?;
-    let limits = cast_limits::<f32>(&spec.limits);
+    set_observer(&spec.observer.cast(), &mut set)?;
+    let limits = spec.limits.cast::<f32>();
     // No limits are 10⁶ of either kind; the target's range ends sooner, and further off than any flight.
     set(Parameter::ThrustMin, &[limits.min_thrust.max(0.0), limits.max_thrust.min(1e4)])?;
     set(Parameter::TorqueMax1, &limits.max_torque.map(|torque| torque.min(1e3)))?;
@@ -38,7 +37,7 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
     set_supervisor(&told, &mut set)?;
     match &spec.law {
         Law::Follow { path, gains } => {
-            let Gains { k1, k2, k3, k4, integral } = cast_gains::<f32>(gains);
+            let Gains { k1, k2, k3, k4, integral } = gains.cast::<f32>();
             set(Parameter::Law, &[0.0])?;
             set(Parameter::K1D0, &k1)?;
             set(Parameter::K2D0, &k2)?;
@@ -48,7 +47,7 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
             set_path(path, &mut set)?;
         }
         Law::Track { reference, gains } => {
-            let TrackGains { position: [k1, k2, k3], yaw } = cast_track_gains::<f32>(gains);
+            let TrackGains { position: [k1, k2, k3], yaw } = gains.cast::<f32>();
             set(Parameter::Law, &[1.0])?;
             set(Parameter::K1D0, &k1)?;
             set(Parameter::K2D0, &k2)?;

@@ -194,7 +194,7 @@ impl Point {
     }
 
     fn vehicle<T: Real>(&self) -> Result<Vehicle<T>, Invalid> {
-        Vehicle::new(pilot::cast(&self.vehicle)).map_err(|error| Invalid::out_of_range("vehicle", error))
+        Vehicle::new(self.vehicle.cast()).map_err(|error| Invalid::out_of_range("vehicle", error))
     }
 
     fn state<T: Real>(&self) -> State<T> {
@@ -208,7 +208,7 @@ impl Point {
         let solution = follow::law(
             &self.vehicle()?,
             &mut path,
-            &pilot::cast_gains(gains),
+            &gains.cast(),
             &state,
             &self.zeta.map(T::lit),
             &self.integral.map(T::lit),
@@ -226,7 +226,7 @@ impl Point {
     ) -> Result<Answer, Invalid> {
         let solution = track::law(
             &self.vehicle()?,
-            &pilot::cast_track_gains(gains),
+            &gains.cast(),
             &reference.at(time),
             &self.state(),
             &self.zeta.map(T::lit),
@@ -303,7 +303,7 @@ fn answer<T: Real, X>(solution: &controller::Solution<T, X>, xi: &[&[T]]) -> Ans
         torque: input.torque,
         xi: xi.iter().copied().flatten().map(|value| value.to_f64()).collect(),
         nu: solution.nu.map(T::to_f64),
-        margins: pilot::margins_f64(&solution.margins).into(),
+        margins: solution.margins.cast().into(),
         b: None,
         a: None,
     }

@@ -11,7 +11,6 @@ use crate::describe::input::Invalid;
 use crate::describe::route::Route;
 use crate::describe::scenario::{ControllerSpec, Law};
 use crate::fly::flight::{Ending, LOST_M, Moment, Outcome, Steering, Steers, fly};
-use crate::fly::pilot;
 use crate::world::Seed;
 
 /// The supervised law in f32, asked to follow its path from the first step on.
@@ -26,11 +25,11 @@ impl Supervised {
     /// [`SetupError`] if rounding to f32 takes a parameter out of range, or the approach's limits are.
     pub fn new(spec: &ControllerSpec, approach: &ApproachFields) -> Result<Option<Self>, SetupError<f32>> {
         let Law::Follow { path, gains } = &spec.law else { return Ok(None) };
-        let vehicle = Vehicle::new(pilot::cast(&spec.vehicle))?;
-        let sampling = pilot::cast_sampling(&spec.sampling());
-        let follower = Follower::new(vehicle, path.build()?, pilot::cast_gains(gains), sampling)?
-            .with_observer(&pilot::cast_observer(&spec.observer))?
-            .with_limits(pilot::cast_limits(&spec.limits))?;
+        let vehicle = Vehicle::new(spec.vehicle.cast())?;
+        let sampling = spec.sampling().cast();
+        let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?
+            .with_observer(&spec.observer.cast())?
+            .with_limits(spec.limits.cast())?;
         let gentle = ApproachLimits::gentle(&vehicle);
         let or = |given: Option<f64>, other: f32| given.map_or(other, |value| value as f32);
         let radians = |degrees: Option<f64>| degrees.map(f64::to_radians);
@@ -48,16 +47,15 @@ impl Supervised {
 
 impl Steers for Supervised {
     fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        let applied = Command { thrust: applied.thrust as f32, torque: applied.torque.map(|torque| torque as f32) };
-        self.supervisor.take_over(&state.cast(), applied);
+        self.supervisor.take_over(&state.cast(), applied.cast());
     }
 
     #[inline]
     fn steer(&mut self, state: &State<f64>, _: f64) -> Steering {
         let output = self.supervisor.step(&state.cast(), Request::Follow);
         Steering {
-            command: Command { thrust: output.command.thrust.into(), torque: output.command.torque.map(f64::from) },
-            margins: self.supervisor.solution().map(|solution| pilot::margins_f64(&solution.margins)),
+            command: output.command.cast(),
+            margins: self.supervisor.solution().map(|solution| solution.margins.cast()),
             mode: output.mode,
             fault: output.fault,
             disturbance: self.supervisor.disturbance().cast(),
@@ -158,7 +156,7 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
         .ok_or_else(|| Invalid::new("scenario.controller.law", "not \"follow\""))?;
 
     // The limits as the controller has them, rounded to f32.
-    let limits = pilot::cast_limits::<f32>(&controller.limits);
+    let limits = controller.limits.cast::<f32>();
     let thrust_range = f64::from(limits.min_thrust)..=f64::from(limits.max_thrust);
     let max_torque = limits.max_torque.map(f64::from);
     let period = 1.0 / controller.rate_hz;
