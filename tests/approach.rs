@@ -1,4 +1,4 @@
-//! Engagement from afar: 20 m off the path in any direction, moving at 3 m/s with the rod swinging at 25°, whatever the yaw.
+//! Joining from afar: 20 m off the path in any direction, moving at 3 m/s with the rod swinging at 25°, whatever the yaw.
 //!
 //! What the approach promises is checked on the plant: it keeps its limits once the swing it was given has died, it joins without overshoot,
 //! and neither thrust nor torque steps when the law takes over.
@@ -30,7 +30,7 @@ fn follower(bandwidth: f32) -> Follower<f32, impl Path<f32>> {
         k4: place(&[-2.0, -3.0].map(Pole::Real)).expect("stable poles"),
         integral: [0.0; 3],
     };
-    let vehicle = Vehicle::new(VehicleParams::default()).expect("Table I");
+    let vehicle = Vehicle::new(VehicleParams::paper()).expect("Table I");
     let path = Circle::new(RADIUS as f32, P3 as f32).expect("a circle").at_speed(PATH_SPEED as f32);
     Follower::new(vehicle, path, gains, Sampling::every(PERIOD as f32))
         .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(bandwidth)))
@@ -83,7 +83,7 @@ struct Extremes {
     end: f64,
 }
 
-fn engage(seed: u64, bandwidth: f32) -> Extremes {
+fn join(seed: u64, bandwidth: f32) -> Extremes {
     let mut random = Stream::new(20, seed, Purpose::Draw);
     let state = start(&mut random);
     let mut body = Multibody::new(VehicleParameters::default(), &state);
@@ -129,10 +129,10 @@ fn engage(seed: u64, bandwidth: f32) -> Extremes {
 
 #[test]
 fn engaging_twenty_metres_away_keeps_the_limits_and_does_not_overshoot() {
-    let limits = ApproachLimits::gentle(&Vehicle::new(VehicleParams::<f64>::default()).expect("Table I"));
+    let limits = ApproachLimits::gentle(&Vehicle::new(VehicleParams::<f64>::paper()).expect("Table I"));
     for bandwidth in [0.0, 8.0] {
         for seed in 0..20 {
-            let seen = engage(seed, bandwidth);
+            let seen = join(seed, bandwidth);
             let told = format!("seed {seed}, observers of {bandwidth} rad/s: {seen:?}");
             assert!(seen.calm_tilt <= limits.tilt, "{told}");
             assert!(seen.calm_rod <= limits.rod_angle, "{told}");

@@ -73,7 +73,7 @@ proptest! {
         position_6 in vector(30.0),
         yaw_2 in -3.0..3.0,
     ) {
-        let vehicle = Vehicle::new(VehicleParams::<f64>::default()).expect("Table I");
+        let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).expect("Table I");
         let ([alpha, beta, phi, theta, psi], [alpha_dot, beta_dot, o1, o2, o3]) = (angles, rates);
         let [v1, v2, v3] = velocity.into();
         let state = State::from_paper(&[

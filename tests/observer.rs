@@ -59,7 +59,7 @@ fn fly(setting: &Setting) -> Vec<Sample> {
         k4: place(&[-2.0, -3.0].map(Pole::Real)).expect("stable poles"),
         integral: [0.0; 3],
     };
-    let vehicle = Vehicle::new(VehicleParams::default()).expect("Table I");
+    let vehicle = Vehicle::new(VehicleParams::paper()).expect("Table I");
     let path = Circle::new(RADIUS as f32, P3 as f32).expect("a circle").at_speed(1.0);
     let mut follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD as f32))
         .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(setting.bandwidth)))
@@ -70,7 +70,7 @@ fn fly(setting: &Setting) -> Vec<Sample> {
 
     let state = State::at_rest(Vector3::new(RADIUS + 0.6, 0.0, P3 - 0.8));
     let mut body = Multibody::new(VehicleParameters { payload_mass: setting.mass, ..Default::default() }, &state);
-    follower.engage(&state.cast(), Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() });
+    follower.take_over(&state.cast(), Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() });
     let (onset, payload_force) = setting.force;
     (0..(setting.duration / PERIOD) as u32)
         .map(|step| {
@@ -117,7 +117,7 @@ fn largest(samples: &[Sample], span: &Range<f64>, value: impl Fn(&Sample) -> f64
 
 #[test]
 fn a_steady_newton_on_the_payload_is_found_and_flown() {
-    let told = Vehicle::new(VehicleParams::<f64>::default()).expect("Table I");
+    let told = Vehicle::new(VehicleParams::<f64>::paper()).expect("Table I");
     let force = Vector3::new(0.6, -0.8, 0.0);
     // In mid-lap, and at rest a metre off the path.
     for onset in [10.0, 0.0] {

@@ -71,11 +71,11 @@ fn assert_order<const N: usize>(what: &str, polynomial: &Series<f64, N>, exact: 
 /// All outputs of a path, as series, against their values at other times; and the gradients against the surfaces.
 fn check_series(name: &str, path: &mut dyn Path<f64>) {
     let [start, ..] = MOTION;
-    path.engage(&start);
+    path.search(&start);
     let outputs = path.outputs(&series(&MOTION));
     let mut at = |t: f64| {
         let motion = later(&MOTION, t);
-        path.engage(&motion[0]);
+        path.search(&motion[0]);
         path.outputs(&series(&motion))
     };
     let times = [TIME, 0.5 * TIME, -TIME, -0.5 * TIME];
@@ -92,7 +92,7 @@ fn check_series(name: &str, path: &mut dyn Path<f64>) {
         let mut line: Motion =
             [start, Vector3::zeros(), Vector3::zeros(), Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
         line[1][axis] = 1.0;
-        path.engage(&start);
+        path.search(&start);
         let along_axis = path.outputs(&series(&line));
         for i in 0..2 {
             let (gradient, slope) = (outputs.gradients[i][axis], along_axis.surfaces[i].derivative(1));
@@ -210,7 +210,7 @@ fn check_ellipse(name: &str, curve: &mut impl Curved<f64>, forward: bool) {
         motion[0] = point;
         // 3 m/s along, and 1 across, which ρ·v does not see.
         motion[1] = direction * 3.0 + Vector3::new(0.0, 0.0, 1.0);
-        curve.engage(&point);
+        curve.search(&point);
         let located = curve.locate(&series(&motion));
         let sign = if forward { 1.0 } else { -1.0 };
         assert!(length(&(located.tangent() - direction * sign)) < 1e-13, "{name}: ρ = {}", located.tangent());
@@ -395,7 +395,7 @@ proptest! {
             let mut motion = [Vector3::zeros(); 6];
             motion[0] = p;
             if i == 0 {
-                path.engage(&p.map(|x| x as f32));
+                path.search(&p.map(|x| x as f32));
             }
             let located = path.locate(&series::<f32>(&motion));
             let (expected, expected_distance) = sum.nearest(&p);
@@ -413,7 +413,7 @@ proptest! {
         let sum = Sum(harmonics);
         let Ok(mut path) = FourierPath::new(harmonics) else { return Err(TestCaseError::reject("steep")) };
         let [c, ..] = sum.at(sigma);
-        path.engage(&c.map(|x| x as f32));
+        path.search(&c.map(|x| x as f32));
         let mut motion = [Vector3::zeros(); 6];
         motion[0] = Vector3::repeat(f64::NAN);
         let _ = path.locate(&series::<f32>(&motion));
@@ -432,7 +432,7 @@ fn a_yaw_more_by_whole_turns_is_the_same_yaw() {
     use controller::law::follow::law;
     use controller::{Gains, State, Vehicle, VehicleParams};
 
-    let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
+    let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).unwrap();
     let gains = Gains { k1: [1.0; 6], k2: [1.0; 6], k3: [1.0; 5], k4: [2.0, 3.0], integral: [0.0; 3] };
     let state = State::at_rest(Vector3::new(5.0, 0.0, -10.0));
     let answer = |yaw: f64| {

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!         arm                first good state
-//!   OFF ───────▶ OFF, armed ──────────────────▶ IDLE, ENGAGE, FOLLOW, HOLD, LAND, FAULT: the supervisor's
+//!   OFF ───────▶ OFF, armed ──────────────────▶ IDLE, JOIN, FOLLOW, HOLD, LAND, FAULT: the supervisor's
 //!    ▲                                                          │
 //!    └──────────── landed; or disarm, from anywhere ────────────┘
 //! ```
@@ -406,5 +406,5 @@ fn begin(law: &mut Law, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Re
 
 /// Whether the law flies.
 fn is_flying(mode: Mode) -> bool {
-    matches!(mode, Mode::Engage | Mode::Follow)
+    matches!(mode, Mode::Join | Mode::Follow)
 }

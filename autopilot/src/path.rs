@@ -118,8 +118,8 @@ impl Curve<f32> for AnyCurve {
         each!(self, curve => curve.locate(position))
     }
 
-    fn engage(&mut self, position: &Vector3<f32>) {
-        each!(self, curve => curve.engage(position));
+    fn search(&mut self, position: &Vector3<f32>) {
+        each!(self, curve => curve.search(position));
     }
 }
 

@@ -16,7 +16,7 @@ pub fn mode(mode: Mode) -> LoadMode {
     match mode {
         Mode::Off => LoadMode::LOAD_MODE_OFF,
         Mode::Idle => LoadMode::LOAD_MODE_IDLE,
-        Mode::Engage => LoadMode::LOAD_MODE_ENGAGE,
+        Mode::Join => LoadMode::LOAD_MODE_ENGAGE,
         Mode::Follow => LoadMode::LOAD_MODE_FOLLOW,
         Mode::Hold => LoadMode::LOAD_MODE_HOLD,
         Mode::Land => LoadMode::LOAD_MODE_LAND,
@@ -63,7 +63,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
     let mode = match mode {
         Mode::Off => "off",
         Mode::Idle => "idle",
-        Mode::Engage => "joining the path",
+        Mode::Join => "joining the path",
         Mode::Follow => "on the path",
         Mode::Hold => "hold",
         Mode::Land => "landing",

@@ -72,7 +72,7 @@ impl Tracking {
 
     /// Goes on from `applied` without a bump in thrust.
     pub fn take_over(&mut self, state: &State<f32>, applied: Command<f32>) {
-        self.tracker.engage(state, applied);
+        self.tracker.take_over(state, applied);
         (self.mode, self.fault) = (Mode::Follow, None);
     }
 

@@ -14,7 +14,7 @@
 //! ```
 //! use controller::{Circle, Command, Follower, Gains, Pole, Sampling, State, Vector3, Vehicle, VehicleParams, place};
 //!
-//! let vehicle = Vehicle::new(VehicleParams::<f32>::default())?;
+//! let vehicle = Vehicle::new(VehicleParams::<f32>::paper())?;
 //! let path = Circle::new(5.0, -10.0)?.at_speed(1.0);
 //! let k = place(&[-1.0, -2.0, -3.0, -4.0, -5.0, -6.0].map(Pole::Real))?;
 //! let gains = Gains {
@@ -28,7 +28,7 @@
 //!
 //! // At hover, 1 m outside the circle: take over from the thrust that holds the vehicle, then step every 2 ms.
 //! let state = State::at_rest(Vector3::new(6.0, 0.0, -10.0));
-//! follower.engage(&state, Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() });
+//! follower.take_over(&state, Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() });
 //! let solution = follower.step(&state);
 //! assert!((solution.command.thrust - vehicle.hover_thrust()).abs() < 1e-3);
 //! # Ok::<(), Box<dyn core::error::Error>>(())

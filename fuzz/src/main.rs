@@ -67,7 +67,7 @@ fn near() -> State<f32> {
 }
 
 fn supervisor(choice: u8) -> Supervisor<f32, impl Path<f32>> {
-    let vehicle = Vehicle::new(VehicleParams::default()).unwrap();
+    let vehicle = Vehicle::new(VehicleParams::paper()).unwrap();
     let k = place(&[-1.0, -2.0, -3.0, -4.0, -5.0, -6.0].map(Pole::Real)).unwrap();
     let gains = Gains {
         k1: k,

@@ -15,7 +15,7 @@ fn implicit(h1: &str, h2: &str) -> PathSpec {
 }
 
 fn vehicle() -> Vehicle<f64> {
-    Vehicle::new(VehicleParams::default()).unwrap()
+    Vehicle::new(VehicleParams::paper()).unwrap()
 }
 
 fn check(path: &PathSpec) -> Result<Report, Refusal> {

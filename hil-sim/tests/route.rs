@@ -22,9 +22,9 @@ fn difference(path: &PathSpec, x: &[f64; 16], zeta: &[f64; 4]) -> Option<f64> {
     let wanted = path.witness(Operating { vehicle: &vehicle, x, zeta }, &rows, &[0.0; 3], &[0.0; 3]).ok()?;
     let mut route = path.build::<f64>().unwrap();
     let state = State::from_paper(x);
-    route.engage(&state.position);
+    route.search(&state.position);
     let found = follow::law(
-        &Vehicle::new(VehicleParams::default()).unwrap(),
+        &Vehicle::new(VehicleParams::paper()).unwrap(),
         &mut route,
         &gains,
         &state,

@@ -20,9 +20,10 @@ pub struct VehicleParams<T> {
     pub gravity: T,
 }
 
-impl<T: Real> Default for VehicleParams<T> {
-    /// The paper's Table I with g = 9.81 m/s².
-    fn default() -> Self {
+impl<T: Real> VehicleParams<T> {
+    /// The paper's vehicle, its Table I, with g = 9.81 m/s²: for its figures and for examples. Yours is another.
+    #[must_use]
+    pub fn paper() -> Self {
         Self {
             payload_mass: T::lit(0.5),
             uav_mass: T::lit(2.5),

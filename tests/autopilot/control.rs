@@ -28,8 +28,7 @@ fn nothing_turns_unless_armed_and_given_a_state() {
 
 #[test]
 fn asked_before_it_is_armed_it_takes_over_in_flight() {
-    for (request, mode) in [(Request::Follow, Mode::Engage), (Request::Hold, Mode::Hold), (Request::Land, Mode::Land)]
-    {
+    for (request, mode) in [(Request::Follow, Mode::Join), (Request::Hold, Mode::Hold), (Request::Land, Mode::Land)] {
         let mut autopilot = driven(0.0);
         assert!(autopilot.request(request));
         autopilot.arm().unwrap();
@@ -79,7 +78,7 @@ fn a_lost_state_is_coasted_over_then_sunk_from_then_flown_again() {
     // 0.1 s of coasting at 2 ms, to within the sum's rounding.
     for _ in 0..49 {
         let answer = autopilot.tick();
-        assert_eq!((answer.outputs, autopilot.mode()), (last.outputs, Mode::Engage));
+        assert_eq!((answer.outputs, autopilot.mode()), (last.outputs, Mode::Join));
         assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
     }
     autopilot.tick();
@@ -166,7 +165,7 @@ fn old_and_bad_states_are_refused_counted_and_named() {
     fly(&mut rig.autopilot, 5);
     rig.news();
     assert!(fly(&mut rig.autopilot, 4).command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
-    assert_eq!((rig.autopilot.mode(), rig.autopilot.counters().refused), (Mode::Engage, 1));
+    assert_eq!((rig.autopilot.mode(), rig.autopilot.counters().refused), (Mode::Join, 1));
     assert_eq!(rig.news(), ["joining the path: no state"]);
 
     type Spoil = fn(&mut LOAD_STATE_DATA);
@@ -185,7 +184,7 @@ fn old_and_bad_states_are_refused_counted_and_named() {
         rig.autopilot.receive(&frame);
         let answer = rig.autopilot.tick();
         assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_BAD_STATE), "{name}");
-        assert_eq!(rig.autopilot.mode(), Mode::Engage, "{name}");
+        assert_eq!(rig.autopilot.mode(), Mode::Join, "{name}");
         let said = rig.news();
         // What was said last is not said again.
         assert!(sequence == 6 || said == [format!("joining the path: bad {name}")], "{said:?}");
@@ -290,6 +289,6 @@ proptest! {
         // And the next good one is flown.
         let answer = fly(&mut autopilot, steps + 1);
         prop_assert!(is_flyable(&answer, &parameters));
-        prop_assert!(matches!(autopilot.mode(), Mode::Engage | Mode::Hold), "{:?}", autopilot.mode());
+        prop_assert!(matches!(autopilot.mode(), Mode::Join | Mode::Hold), "{:?}", autopilot.mode());
     }
 }

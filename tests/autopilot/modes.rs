@@ -92,7 +92,7 @@ fn what_the_pilot_asks_for_over_the_link_is_done() {
     assert_eq!((flight.mode(), flight.rig.news()), (Mode::Hold, vec!["hold".to_owned()]));
     flight.ask(LoadMode::LOAD_MODE_FOLLOW);
     flight.step();
-    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Engage, vec!["joining the path".to_owned()]));
+    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Join, vec!["joining the path".to_owned()]));
     flight.until(Mode::Follow, 30.0);
     // In flight, to idle is to hold.
     flight.ask(LoadMode::LOAD_MODE_IDLE);
@@ -151,7 +151,7 @@ fn beyond_the_envelope_it_holds_says_why_and_goes_back() {
     assert!(said.len() == 1 && said[0].starts_with("hold: "), "{said:?}");
     assert_eq!(flight.rig.autopilot.counters().fallbacks, 1);
 
-    flight.until(Mode::Engage, 30.0);
+    flight.until(Mode::Join, 30.0);
     flight.until(Mode::Follow, 30.0);
     // The reason is known until something else is asked for.
     assert!(flight.step().command.faults.contains(named));

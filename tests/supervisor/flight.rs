@@ -16,7 +16,7 @@ pub const LIMITS: ActuatorLimits<f32> = ActuatorLimits { min_thrust: 3.0, max_th
 
 /// The law's vehicle, the paper's Table I.
 pub fn vehicle() -> Vehicle<f32> {
-    Vehicle::new(VehicleParams::default()).unwrap()
+    Vehicle::new(VehicleParams::paper()).unwrap()
 }
 
 /// Poles −1 to −6, and integral action where asked for.

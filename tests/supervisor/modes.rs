@@ -17,7 +17,7 @@ fn table() -> Vec<Vec<String>> {
 }
 
 fn mode(name: &str) -> Mode {
-    let all = [Mode::Off, Mode::Idle, Mode::Engage, Mode::Follow, Mode::Hold, Mode::Land, Mode::Fault];
+    let all = [Mode::Off, Mode::Idle, Mode::Join, Mode::Follow, Mode::Hold, Mode::Land, Mode::Fault];
     all.into_iter().find(|mode| format!("{mode:?}") == name).unwrap()
 }
 
@@ -38,7 +38,7 @@ fn flight_in(mode: Mode) -> (Flight<impl Path<f32>>, Request) {
             flight.until(Mode::Off, Request::Off, 1.0);
             Request::Idle
         }
-        Mode::Engage | Mode::Follow => Request::Follow,
+        Mode::Join | Mode::Follow => Request::Follow,
         Mode::Hold | Mode::Fault => Request::Hold,
         Mode::Land => Request::Land,
     };
@@ -72,7 +72,7 @@ fn after(event: &str, from: Mode) -> Mode {
             leaning.rod = Vector3::new(sin, 0.0, cos);
             let output = flight.step_seeing(&leaning, standing);
             let named = [Margin::RodAngle, Margin::ThrustAngle, Margin::Thrust, Margin::Tension].map(Fault::Margin);
-            let by_law = matches!(from, Mode::Engage | Mode::Follow);
+            let by_law = matches!(from, Mode::Join | Mode::Follow);
             assert!(!by_law || output.fault.is_some_and(|fault| named.contains(&fault)), "{output:?}");
             assert!(by_law || from == Mode::Fault || output.warning.is_some(), "{output:?}");
             output.mode
@@ -151,5 +151,5 @@ fn a_policy_that_does_not_resume_waits_for_a_new_request() {
     assert_eq!(flight.step_seeing(&leaning, Request::Follow).mode, Mode::Hold);
     assert!((0..5000).all(|_| flight.step(Request::Follow).mode == Mode::Hold));
     flight.step(Request::Hold);
-    assert_eq!(flight.step(Request::Follow).mode, Mode::Engage);
+    assert_eq!(flight.step(Request::Follow).mode, Mode::Join);
 }

@@ -76,7 +76,7 @@ fn recovers(name: &str, state: &State<f64>, applied: f64) -> f64 {
     let mut followed = 0.0;
     for _ in 0..(90.0 / PERIOD) as usize {
         let output = flight.step(Request::Follow);
-        assert!(matches!(output.mode, Mode::Hold | Mode::Engage | Mode::Follow), "{name}: {:?}", output.mode);
+        assert!(matches!(output.mode, Mode::Hold | Mode::Join | Mode::Follow), "{name}: {:?}", output.mode);
         lowest = lowest.max(flight.body.uav_position().z);
         followed = if output.mode == Mode::Follow { followed + PERIOD } else { 0.0 };
         if followed > 10.0 {

@@ -205,7 +205,7 @@ impl Setup {
     fn good() -> Self {
         let vehicle = crate::flight::vehicle();
         Self {
-            vehicle: VehicleParams::default(),
+            vehicle: VehicleParams::paper(),
             circle: [5.0, -10.0, 1.0],
             gains: gains([0.0; 3]),
             sampling: Sampling { latency: 0.01, rotor_lag: 0.05, ..Sampling::every(PERIOD as f32) },

@@ -26,7 +26,7 @@ fn law<T: Real>(state: &State<f64>) -> [Command<f64>; 3] {
         k4: place(&[-2.0, -3.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap(),
         integral: [T::zero(); 3],
     };
-    let vehicle = Vehicle::new(VehicleParams::default()).unwrap();
+    let vehicle = Vehicle::new(VehicleParams::paper()).unwrap();
     let mut follower = Follower::new(vehicle, circle, gains, Sampling::every(T::lit(0.002))).unwrap();
     follower.start(&state.cast(), [T::zero(); 4]);
     core::array::from_fn(|_| {

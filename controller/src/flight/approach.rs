@@ -1,6 +1,6 @@
 //! Joining a path from afar: the path starts where the payload is, and slides home.
 //!
-//! At engagement the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law then follows the curve displaced by
+//! When it is joined the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law then follows the curve displaced by
 //!
 //! ```text
 //! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0
@@ -122,7 +122,7 @@ pub struct Approach<T> {
     velocity: Vector3<T>,
     /// (∇h1 × ∇h2)·ρ at p₀.
     path_det: T,
-    /// 0 − v_d and ψ_d − ψ at engagement.
+    /// 0 − v_d and ψ_d − ψ when the path was joined.
     speed: T,
     yaw: T,
     elapsed: T,
@@ -149,14 +149,14 @@ impl<T: Real> Approach<T> {
 
     /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
     pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
-        path.engage(position);
+        path.search(position);
         Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
     }
 
     /// Begins at `state`. `false`, and nothing changed, if no point of the path is found.
-    pub(crate) fn begin<P: Path<T> + ?Sized>(&mut self, path: &mut P, pace: &Pace<T>, state: &State<T>) -> bool {
+    pub(crate) fn join<P: Path<T> + ?Sized>(&mut self, path: &mut P, pace: &Pace<T>, state: &State<T>) -> bool {
         let State { position, velocity, .. } = state;
-        path.engage(position);
+        path.search(position);
         let Some(Nearest { point, outputs, path_det }) = nearest(path, position) else {
             return false;
         };
@@ -374,7 +374,7 @@ mod tests {
 
     #[test]
     fn durations_keep_speed_and_acceleration() {
-        let vehicle = Vehicle::new(VehicleParams::<f64>::default()).unwrap();
+        let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).unwrap();
         let limits = ApproachLimits::gentle(&vehicle);
         let pace = limits.pace(&vehicle).unwrap();
         let snap = largest_snap(&vehicle, &limits);

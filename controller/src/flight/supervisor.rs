@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!          arm         hold, follow          follow, calm            path reached
-//!   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ ENGAGE ──────────────▶ FOLLOW
+//!   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ JOIN ────────────────▶ FOLLOW
 //!    ▲                                ▲ ▲                     │                      │
 //!    │                                │ └─────────────────────┴──────────────────────┘
 //!    │                                │    hold asked for; a margin beyond its limit;
@@ -21,9 +21,9 @@
 //! |--------|-------|--------|----------|--------|--------|--------------|---------------|--------------|--------|----------|---------------|
 //! | Off    | Off   | Idle   | Idle     | Idle   | Off    |              |               |              |        | Off      | Off           |
 //! | Idle   | Off   | Idle   | Hold     | Hold   | Off    |              |               |              |        | Idle     | Idle          |
-//! | Engage | Off   | Hold   | Engage   | Hold   | Land   | Follow       | Hold          | Hold         |        | Engage   | Fault         |
+//! | Join   | Off   | Hold   | Join     | Hold   | Land   | Follow       | Hold          | Hold         |        | Join     | Fault         |
 //! | Follow | Off   | Hold   | Follow   | Hold   | Land   |              | Hold          | Hold         |        | Follow   | Fault         |
-//! | Hold   | Off   | Hold   | Engage   | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
+//! | Hold   | Off   | Hold   | Join     | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
 //! | Land   | Off   | Hold   | Hold     | Hold   | Land   |              | Land          |              | Off    | Land     | Fault         |
 //! | Fault  | Off   | Hold   | Hold     | Hold   | Hold   |              | Hold          |              |        | Fault    | Fault         |
 //!
@@ -53,7 +53,7 @@ pub enum Mode {
     /// Armed, at least thrust.
     Idle,
     /// On the way to the path.
-    Engage,
+    Join,
     /// On the path.
     Follow,
     /// At rest, or coming to it.
@@ -233,7 +233,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         if state.check().is_ok() && applied.is_finite() {
             let sampler = self.follower.sampler();
             let applied = sampler.actuation().apply(&applied);
-            sampler.engage(state, applied);
+            sampler.take_over(state, applied);
             self.request = Request::Hold;
             self.fault = None;
             self.enter_hold(state, None);
@@ -282,7 +282,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
                     // In fault with a good state: the rotors were cut.
                     Mode::Off | Mode::Fault => self.ground(sampled, T::zero()),
                     Mode::Idle => self.ground(sampled, self.follower.actuation().least_thrust()),
-                    Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
+                    Mode::Join | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
                 }
             }
         }
@@ -291,8 +291,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// By the law, or by hold.
     #[inline]
     fn fly(&mut self, sampled: &State<T>) -> Output<T> {
-        let ahead = self.follower.sampler().ahead(sampled);
-        if matches!(self.mode, Mode::Engage | Mode::Follow) {
+        let ahead = self.follower.sampler().sample(sampled);
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.follow(sampled, &ahead)
         } else {
             self.hold(sampled, &ahead.state)
@@ -308,7 +308,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     #[cold]
     fn ground(&mut self, sampled: &State<T>, thrust: T) -> Output<T> {
         let command = Command { thrust, torque: Vector3::zeros() };
-        self.follower.sampler().engage(sampled, command);
+        self.follower.sampler().take_over(sampled, command);
         self.output(command, None)
     }
 
@@ -320,10 +320,10 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             (Mode::Idle, Request::Off | Request::Idle) => Mode::Idle,
             (Mode::Idle, Request::Land) => Mode::Off,
             (Mode::Idle, _) => Mode::Hold,
-            (Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
-            (Mode::Engage, Request::Follow) if self.follower.approach().is_active() => Mode::Engage,
-            (Mode::Engage | Mode::Follow, Request::Follow) => Mode::Follow,
-            (Mode::Hold, Request::Follow) if self.may_follow() => Mode::Engage,
+            (Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
+            (Mode::Join, Request::Follow) if self.follower.approach().is_active() => Mode::Join,
+            (Mode::Join | Mode::Follow, Request::Follow) => Mode::Follow,
+            (Mode::Hold, Request::Follow) if self.may_follow() => Mode::Join,
             (Mode::Fault, _) if self.policy.lost == Lost::Cut => Mode::Fault,
             _ => Mode::Hold,
         };
@@ -331,7 +331,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             return;
         }
         match to {
-            Mode::Engage => self.engage(sampled),
+            Mode::Join => self.join(sampled),
             Mode::Hold | Mode::Land => {
                 self.enter_hold(sampled, None);
                 self.mode = to;
@@ -342,12 +342,12 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
 
     /// Joins the path, if the vehicle is where the law can fly it.
     #[cold]
-    fn engage(&mut self, sampled: &State<T>) {
+    fn join(&mut self, sampled: &State<T>) {
         let least = self.follower.vehicle().hover_thrust() * T::lit(ENGAGING_THRUST);
         let falling = self.follower.sampler().applied().thrust < least;
         if !falling && self.standing(sampled) == Standing::Inside {
             if self.follower.rejoin(sampled, &self.pace) {
-                self.mode = Mode::Engage;
+                self.mode = Mode::Join;
             } else {
                 self.enter_hold(sampled, Some(Fault::NoPath));
             }
@@ -434,7 +434,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             Standing::Inside => None,
             Standing::Warning(margin) | Standing::Beyond(margin) => Some(margin),
         };
-        let command = self.follower.sampler().hold(wanted, T::zero(), T::zero());
+        let command = self.follower.sampler().commit(wanted, T::zero(), T::zero());
         self.output(command, warning)
     }
 
@@ -449,9 +449,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         match self.mode {
             Mode::Off => Command::zero(),
             Mode::Idle => level(sampler.actuation().least_thrust()),
-            Mode::Engage | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => {
-                sampler.coast()
-            }
+            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => sampler.coast(),
             _ => {
                 self.mode = Mode::Fault;
                 match self.policy.lost {

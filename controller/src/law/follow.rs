@@ -295,25 +295,25 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
 
     /// Takes over from whatever applied `applied` until now, without a bump: thrust goes on from there with the payload's vertical
     /// acceleration, and the torque's step against it fades. Integrals and disturbances start at zero.
-    pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.sampler.engage(state, applied);
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+        self.sampler.take_over(state, applied);
         self.begin(state);
     }
 
-    /// Joins the path from afar, within `limits`: [engages](Self::engage), and slides the path from where the payload is to where it
+    /// Joins the path from afar, within `limits`: [takes over](Self::take_over), and slides the path from where the payload is to where it
     /// belongs. `false` if a limit is out of range ([`ApproachLimits::pace`] says which), or no point of the path was found.
     pub fn join(&mut self, state: &State<T>, applied: Command<T>, limits: &ApproachLimits<T>) -> bool {
         let Ok(pace) = limits.pace(self.sampler.vehicle()) else { return false };
-        self.sampler.engage(state, applied);
+        self.sampler.take_over(state, applied);
         self.rejoin(state, &pace)
     }
 
     /// Joins the path from what is being commanded, with what is known of disturbances.
     pub(crate) fn rejoin(&mut self, state: &State<T>, pace: &Pace<T>) -> bool {
-        if !self.approach.begin(&mut self.path, pace, state) {
+        if !self.approach.join(&mut self.path, pace, state) {
             return false;
         }
-        self.sampler.take_over(state);
+        self.sampler.carry_on(state);
         self.integral = [T::zero(); 3];
         true
     }
@@ -328,7 +328,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
     /// This is the bare law: near its singularities it answers what it must. [`Supervisor`](crate::flight::supervisor::Supervisor) is total.
     #[inline]
     pub fn step(&mut self, sampled: &State<T>) -> Solution<T, Xi<T>> {
-        let ahead = self.sampler.ahead(sampled);
+        let ahead = self.sampler.sample(sampled);
         self.evaluate(&ahead);
         let command = self.accept();
         Solution { command, ..self.solution }
@@ -356,7 +356,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Follower<T, P, A> {
         let period = self.sampler.period();
         self.approach.advance(period);
         let Solution { command, u_zeta, margins, xi, .. } = &self.solution;
-        let applied = self.sampler.hold(*command, *u_zeta, margins.q3 * margins.q_b3);
+        let applied = self.sampler.commit(*command, *u_zeta, margins.q3 * margins.q_b3);
         // What the actuators can't give, no integral may ask for ever louder; nor count the way back for an error that stays.
         self.unsaturated = if self.sampler.is_saturated() { T::zero() } else { self.unsaturated + period };
         if self.unsaturated >= T::lit(RECOVERY) {

@@ -162,19 +162,19 @@ impl<T: Real> Tracker<T> {
     }
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
-    pub fn engage(&mut self, state: &State<T>, applied: Command<T>) {
-        self.sampler.engage(state, applied);
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+        self.sampler.take_over(state, applied);
     }
 
     /// The command for the coming hold, from the state sampled now and the reference about now. Call once every period.
     #[inline]
     pub fn step(&mut self, sampled: &State<T>, reference: &Reference<T>) -> Solution<T, TrackXi<T>> {
         let reference = reference.shift(self.sampler.horizon());
-        let Ahead { state, zeta } = self.sampler.ahead(sampled);
+        let Ahead { state, zeta } = self.sampler.sample(sampled);
         let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
         let mut solution = law(vehicle, &self.gains, &reference, &state, &zeta, disturbance);
         solution.command =
-            self.sampler.hold(solution.command, solution.u_zeta, solution.margins.q3 * solution.margins.q_b3);
+            self.sampler.commit(solution.command, solution.u_zeta, solution.margins.q3 * solution.margins.q_b3);
         solution
     }
 

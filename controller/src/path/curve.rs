@@ -50,7 +50,7 @@ pub trait Curve<T: Real> {
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
 
     /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
-    fn engage(&mut self, _position: &Vector3<T>) {}
+    fn search(&mut self, _position: &Vector3<T>) {}
 }
 
 /// A curve that knows how its tangent turns.

@@ -24,7 +24,7 @@ const N: usize = 7;
 ///
 /// **h1 and h2 are in m, and |(h1, h2)| is the distance to the curve.** These coordinates exist within the curve's reach, the
 /// distance of its nearest centre of curvature or second branch. The nearest point is followed from sample to sample by
-/// [`NEWTON_STEPS`](crate::path::NEWTON_STEPS) Newton steps, so a crossing branch can't catch it; [`Curve::engage`] searches the
+/// [`NEWTON_STEPS`](crate::path::NEWTON_STEPS) Newton steps, so a crossing branch can't catch it; [`Curve::search`] searches the
 /// whole curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourierPath<T, const K: usize> {
@@ -170,7 +170,7 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
         }
     }
 
-    fn engage(&mut self, position: &Vector3<T>) {
+    fn search(&mut self, position: &Vector3<T>) {
         self.sigma = self.harmonics.search(&self.offset(position));
     }
 }

@@ -78,7 +78,7 @@ pub trait Path<T: Real> {
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
 
     /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
-    fn engage(&mut self, _position: &Vector3<T>) {}
+    fn search(&mut self, _position: &Vector3<T>) {}
 }
 
 impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
@@ -87,8 +87,8 @@ impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
         (**self).outputs(position)
     }
 
-    fn engage(&mut self, position: &Vector3<T>) {
-        (**self).engage(position);
+    fn search(&mut self, position: &Vector3<T>) {
+        (**self).search(position);
     }
 }
 
@@ -123,7 +123,7 @@ where
         }
     }
 
-    fn engage(&mut self, position: &Vector3<T>) {
-        self.curve.engage(position);
+    fn search(&mut self, position: &Vector3<T>) {
+        self.curve.search(position);
     }
 }

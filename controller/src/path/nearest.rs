@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 pub const NEWTON_STEPS: usize = 3;
 
 /// Newton steps after the search of the whole curve.
-const ENGAGE_STEPS: usize = 8;
+const SEARCH_STEPS: usize = 8;
 
 /// Points of the search of the whole curve, per harmonic.
 const SAMPLES_PER_HARMONIC: usize = 16;
@@ -125,6 +125,6 @@ impl<T: Real, const K: usize> Harmonics<T, K> {
             let distance = distance_squared(sigma);
             if distance < best.1 { (sigma, distance) } else { best }
         });
-        (0..ENGAGE_STEPS).fold(sigma, |sigma, _| self.newton(offset, sigma))
+        (0..SEARCH_STEPS).fold(sigma, |sigma, _| self.newton(offset, sigma))
     }
 }

@@ -183,14 +183,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
-    pub(crate) fn engage(&mut self, state: &State<T>, applied: Command<T>) {
+    pub(crate) fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
         self.reset(state, applied);
-        self.take_over(state);
+        self.carry_on(state);
     }
 
     /// Continues what is being applied, with the ζ that does. The first command's step against it fades.
     #[inline(never)]
-    pub(crate) fn take_over(&mut self, state: &State<T>) {
+    pub(crate) fn carry_on(&mut self, state: &State<T>) {
         let thrust = self.actuators.applied().thrust;
         self.zeta = continuing(&self.vehicle, state, thrust, self.observer.estimate());
         self.u_zeta = T::zero();
@@ -243,7 +243,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
     #[inline]
-    pub(crate) fn ahead(&mut self, sampled: &State<T>) -> Ahead<T> {
+    pub(crate) fn sample(&mut self, sampled: &State<T>) -> Ahead<T> {
         let (dt, observer, actuators) = (self.horizon, &mut self.observer, &self.actuators);
         let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
         let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
@@ -271,7 +271,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference with `alignment` = (q·e3)(q·b3), so that the compensator stands for the motion
     /// that the applied thrust gives.
     #[inline(never)]
-    pub(crate) fn hold(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
+    pub(crate) fn commit(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
         if self.is_softening {
             self.is_softening = false;
             self.bump = self.actuators.applied().minus(&command);

@@ -39,7 +39,7 @@ impl<P: Path<f32>> Following<P> {
             k4: place(&YAW_POLES.map(Pole::Real)).ok()?,
             integral: INTEGRAL,
         };
-        let vehicle = Vehicle::new(VehicleParams::default()).ok()?;
+        let vehicle = Vehicle::new(VehicleParams::paper()).ok()?;
         let limits = ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] };
         let follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD))
             .and_then(|follower| follower.with_limits(limits))
@@ -95,7 +95,7 @@ impl Tracking {
     pub fn new() -> Option<Self> {
         let k = place(&POLES.map(Pole::Real)).ok()?;
         let gains = TrackGains { position: [k; 3], yaw: place(&YAW_POLES.map(Pole::Real)).ok()? };
-        let vehicle = Vehicle::new(VehicleParams::default()).ok()?;
+        let vehicle = Vehicle::new(VehicleParams::paper()).ok()?;
         Some(Self(Tracker::new(vehicle, gains, Sampling::every(PERIOD)).ok()?))
     }
 }

@@ -22,7 +22,7 @@ const DISTANCE_PERIOD_S: f64 = 0.01;
 /// What flies the vehicle: a law alone, or a supervised one.
 pub trait Steers {
     /// Takes over from whatever applied `applied` until now.
-    fn engage(&mut self, state: &State<f64>, applied: &Command<f64>);
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>);
 
     /// The command for the coming hold, from the state read now.
     fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering;
@@ -44,8 +44,8 @@ pub struct Steering {
 }
 
 impl Steers for Pilot<f32> {
-    fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        Self::engage(self, state, applied);
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        Self::take_over(self, state, applied);
     }
 
     #[inline]
@@ -144,7 +144,7 @@ pub fn fly(
             last
         } else {
             if last.is_none() {
-                pilot.engage(&read, &hover);
+                pilot.take_over(&read, &hover);
             }
             pilot.steer(&read, t_s)
         };

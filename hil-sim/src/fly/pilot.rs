@@ -97,11 +97,11 @@ impl<T: Real> Pilot<T> {
     }
 
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
-    pub fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
+    pub fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
         let applied = applied.cast();
         match self {
-            Self::Follow(follower) => follower.engage(&state.cast(), applied),
-            Self::Track(tracker, _) => tracker.engage(&state.cast(), applied),
+            Self::Follow(follower) => follower.take_over(&state.cast(), applied),
+            Self::Track(tracker, _) => tracker.take_over(&state.cast(), applied),
         }
     }
 

@@ -171,8 +171,8 @@ impl<T: Real> Curve<T> for AnyCurve<T> {
         each!(self, curve => curve.locate(position))
     }
 
-    fn engage(&mut self, position: &Vector3<T>) {
-        each!(self, curve => curve.engage(position));
+    fn search(&mut self, position: &Vector3<T>) {
+        each!(self, curve => curve.search(position));
     }
 }
 

@@ -89,7 +89,7 @@ impl PathSpec {
     /// [`Refusal`] with the place where it is no closed, smooth, regular curve.
     pub fn lap(&self) -> Result<&Lap, Refusal> {
         let walked = self.lap.get_or_init(|| {
-            let mut path = self.engaged(self.hint())?;
+            let mut path = self.searched(self.hint())?;
             let start = check::walk::find(&mut path, self.hint())?;
             check::walk::walk(&mut path, start)
         });
@@ -101,7 +101,7 @@ impl PathSpec {
     /// # Errors
     /// [`Refusal`] with the place where it can't.
     pub fn check(&self, vehicle: &Vehicle<f64>, limits: &Limits) -> Result<Report, Refusal> {
-        let mut path = self.engaged(self.hint())?;
+        let mut path = self.searched(self.hint())?;
         check::check(&mut path, vehicle, limits, self.hint())
     }
 
@@ -111,14 +111,14 @@ impl PathSpec {
     /// [`Refusal`] if there is no such motion.
     pub fn steady(&self, vehicle: &Vehicle<f64>) -> Result<Steady, Refusal> {
         let place = self.lap()?.at(0.0);
-        check::steady_at(&mut self.engaged(place.position)?, vehicle, place)
+        check::steady_at(&mut self.searched(place.position)?, vehicle, place)
     }
 
     /// The path in f64, with its nearest point searched for `position`.
-    fn engaged(&self, position: Vector3<f64>) -> Result<Route<f64>, Refusal> {
+    fn searched(&self, position: Vector3<f64>) -> Result<Route<f64>, Refusal> {
         let undefined = || check::Reason::Undefined.at(check::Place { position, arc: 0.0 });
         let mut path = self.build::<f64>().map_err(|_| undefined())?;
-        path.engage(&position);
+        path.search(&position);
         Ok(path)
     }
 

@@ -46,7 +46,7 @@ impl Supervised {
 }
 
 impl Steers for Supervised {
-    fn engage(&mut self, state: &State<f64>, applied: &Command<f64>) {
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
         self.supervisor.take_over(&state.cast(), applied.cast());
     }
 
@@ -184,11 +184,11 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
                 row.first_fault.clone_from(&row.last_fault);
             }
         }
-        let flies = matches!(mode, Mode::Engage | Mode::Follow);
+        let flies = matches!(mode, Mode::Join | Mode::Follow);
         row.falls += u32::from(flying && !flies);
         flying = flies;
         match mode {
-            Mode::Engage => row.engage_s += period,
+            Mode::Join => row.engage_s += period,
             Mode::Follow => row.follow_s += period,
             _ => {}
         }

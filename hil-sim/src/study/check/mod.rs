@@ -162,7 +162,7 @@ pub fn check<P: Path<f64> + ?Sized>(
 
 /// The motion at the prescribed speed and the yaw along it, at every node.
 fn motions<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<Vec<(Motion, [f64; 3])>, Refusal> {
-    path.engage(&lap.nodes()[0].position());
+    path.search(&lap.nodes()[0].position());
     let mut direction = 0.0_f64;
     lap.nodes()
         .iter()
@@ -211,7 +211,7 @@ fn fastest<P: Path<f64> + ?Sized>(
     limits: &Limits,
     direction: f64,
 ) -> Option<Fastest> {
-    path.engage(&lap.nodes()[0].position());
+    path.search(&lap.nodes()[0].position());
     let yaws: Vec<[f64; 3]> = lap.nodes().iter().map(|node| yaw(path, &node.motion)).collect();
     let exceeds = |speed: f64| -> Option<Excess> {
         let factor = speed * direction;

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// # Errors
 /// [`Refusal`] with the place of one.
 pub fn continuous<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<(), Refusal> {
-    path.engage(&lap.nodes()[0].position());
+    path.search(&lap.nodes()[0].position());
     let points: Vec<Point<Profile>> = lap.nodes().iter().map(|node| (*node, profile(path, &node.motion))).collect();
     let most = |quantity: fn(&Profile) -> f64, least: f64| {
         points.iter().map(|(_, profile)| quantity(profile).abs()).fold(least, f64::max)

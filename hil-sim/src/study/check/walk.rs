@@ -105,7 +105,7 @@ pub(super) fn node<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64)
 
 /// Looks between the nodes for a point where |∇h1 × ∇h2| is zero: the surfaces touch, or the curve crosses itself.
 fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
-    path.engage(&nodes[0].position());
+    path.search(&nodes[0].position());
     let largest = nodes.iter().map(|node| node.regularity).fold(0.0, f64::max);
     for [before, here, after] in nodes.array_windows() {
         if here.regularity > before.regularity || here.regularity > after.regularity {
@@ -136,7 +136,7 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
 ///
 /// From each node its Taylor polynomial says what the next node's derivatives are.
 fn smooth<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
-    path.engage(&nodes[0].position());
+    path.search(&nodes[0].position());
     let scales = CHECKED_ORDERS
         .map(|order| nodes.iter().map(|node| length(&node.motion[order])).fold(f64::MIN_POSITIVE, f64::max));
     let errors = |(from, ()): &Point<()>, (to, ()): &Point<()>| {
