@@ -39,6 +39,7 @@ pub mod flight;
 pub mod law;
 pub mod path;
 pub mod sampled;
+pub mod theory;
 
 pub use flight::approach::ApproachLimits;
 pub use flight::envelope::{Band, Envelope, EnvelopeParams, Margin, Margins};
