@@ -17,7 +17,7 @@ def lift():
         close(found.thrust, vector["T"], 1e-13, "T")
 
 
-@covers("5.3", "5.4", "5.5", "5.6", "5.7", "5.8", "7.2", "7.4", "7.5", "6.3")
+@covers("3.8", "3.9", "3.10", "5.3", "5.4", "5.5", "5.6", "5.7", "5.8", "7.2", "7.4", "7.5", "6.3")
 def law():
     """ν and ū against the reference, all sets of gains; and Ā ū + b̄ = ν with the reference's own Ā and b̄."""
     for name in PATHS:

@@ -99,7 +99,7 @@ def plant():
         close(angles, vector["xdot"][5:8], 1e-13, "(1.3)")
 
 
-@covers("3.1", "3.2", "3.3", "3.6", "3.7", "5.1", "5.2", "15.1")
+@covers("3.1", "3.2", "3.3", "3.6", "3.7", "5.1", "5.2", "15.1", "15.7")
 def outputs():
     """ξ against the reference, and that p⁽⁶⁾ enters as the page says: by a series with a sixth coefficient."""
     for name in PATHS:

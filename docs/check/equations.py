@@ -144,9 +144,9 @@ class Outputs:
 
 
 def circle(p, d1, d2, vd):
+    """(15.7)."""
     x, y, z = p
     now = Vec(*(s.c[0] for s in p))
-    # The tangent of (16) as printed.
     along = Vec(-y, x, z * 0.0)
     gradients = (Vec(2 * now[0], 2 * now[1], 0.0), E3)
     return Outputs(x * x + y * y - d1 * d1, z - d2, along, vd, z * 0.0, gradients, p)

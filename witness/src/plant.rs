@@ -1,13 +1,14 @@
-//! The slung-load system, equation (1) of the paper, in the paper's own 16 coordinates.
+//! The slung-load system (1.3), (2.5), (2.8), in the paper's own 16 coordinates.
 //!
-//! x = (p, α, β, φ, θ, ψ, v, α̇, β̇, ω): position p (m) and velocity v (m/s) of the payload in N (n3 down); rod angles
-//! α, β (rad) with q = Rx(α) Ry(β) e3 from the UAV to the payload; attitude R = Ry(θ) Rx(φ) Rz(ψ), body to inertial;
-//! body rate ω (rad/s) in body axes. The inputs are the thrust T (N) along −b3 and the torque τ (N·m) in body axes.
+//! x = (p, α, β, φ, θ, ψ, v, α̇, β̇, ω): position p (m) and velocity v (m/s) of the payload
+//! in N (n3 down); rod angles α, β (rad) with q = Rx(α) Ry(β) e3 from the UAV to the payload;
+//! attitude R = Ry(θ) Rx(φ) Rz(ψ), body to inertial; body rate ω (rad/s) in body axes. The inputs
+//! are the thrust T (N) along −b3 and the torque τ (N·m) in body axes.
 //!
 //! The chart ends at cos β = 0 and at cos φ = 0, where the derivative is not finite.
 //!
-//! All is generic over [`Scalar`], so that the witness can differentiate the same equation; nothing here comes from the
-//! `controller` crate.
+//! All is generic over [`Scalar`], so that the witness can differentiate the same equation; nothing
+//! here comes from the `controller` crate.
 
 use crate::jet::{Scalar, add, cross, dot, scale};
 
@@ -175,7 +176,7 @@ fn group<S: Scalar>(x: &[S; STATES], first: usize) -> [S; 3] {
     [x[first], x[first + 1], x[first + 2]]
 }
 
-/// ẋ = f(x) + G(x) u, equation (1).
+/// ẋ = f(x) + G(x) u.
 #[inline]
 pub fn derivative<S: Scalar>(vehicle: &VehicleParameters, x: &[S; STATES], input: &Input<S>) -> [S; STATES] {
     let geometry = Geometry::of(x);
@@ -269,7 +270,8 @@ pub fn spin_momentum<S: Scalar>(vehicle: &VehicleParameters, x: &[S; STATES]) ->
     add(add(scale(b1, omega[0] * j1), scale(b2, omega[1] * j2)), scale(b3, omega[2] * j3))
 }
 
-/// d_C: distance (m) of a point from the horizontal circle of the paper, centred on n3 at height `p3`.
+/// d_C: distance (m) of a point from the horizontal circle of the paper, centred on n3 at height
+/// `p3`.
 #[must_use]
 pub fn distance_to_circle(position: [f64; 3], radius: f64, p3: f64) -> f64 {
     (position[0].hypot(position[1]) - radius).hypot(position[2] - p3)

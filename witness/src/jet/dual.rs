@@ -3,7 +3,8 @@
 use super::{Scalar, arithmetic_with_f64};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// x + Σ εᵢ xᵢ with εᵢ εⱼ = 0: the value of an expression and its directional derivatives, exact to rounding.
+/// x + Σ εᵢ xᵢ with εᵢ εⱼ = 0: the value of an expression and its directional derivatives,
+/// exact to rounding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<S, const N: usize> {
     /// The value.

@@ -1,12 +1,14 @@
-//! Forward-mode automatic differentiation: one trait for real numbers, dual numbers and truncated Taylor series.
+//! Forward-mode automatic differentiation: one trait for real numbers, dual numbers and truncated
+//! Taylor series.
 //!
-//! The plant and the outputs of a path are written once over [`Scalar`]. With `f64` they are numbers; with [`Dual`]
-//! they carry exact first derivatives along chosen directions; with [`Taylor`] they carry the derivatives along a
-//! flow. The types nest, so `Taylor<Dual<4>, 7>` holds the Lie derivatives L_f^k h for k ≤ 6 together with their
-//! derivatives L_g L_f^k h along four input fields.
+//! The plant and the outputs of a path are written once over [`Scalar`]. With `f64` they are
+//! numbers; with [`Dual`] they carry exact first derivatives along chosen directions; with
+//! [`Taylor`] they carry the derivatives along a flow. The types nest, so `Taylor<Dual<4>, 7>`
+//! holds the Lie derivatives L_f^k h for k ≤ 6 together with their derivatives L_g L_f^k h along
+//! four input fields.
 //!
-//! This serves the simulator's plant and [`crate::law`] only. It shares nothing with the series of the
-//! `controller` crate, whose results it is there to check.
+//! This serves the simulator's plant and [`crate::law`] only. It shares nothing with the series of
+//! the `controller` crate, whose results it is there to check.
 
 mod dual;
 mod taylor;
@@ -18,7 +20,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What a formula may do with a number, whatever derivatives the number carries.
 ///
-/// The functions are those of `f64` and mean the same; each is analytic wherever a formula is differentiated.
+/// The functions are those of `f64` and mean the same; each is analytic wherever a formula is
+/// differentiated.
 pub trait Scalar:
     Copy
     + Add<Output = Self>

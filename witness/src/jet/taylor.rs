@@ -5,8 +5,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// x(t) = Σ c\[k\] tᵏ + O(t^N), so that c\[k\] = x⁽ᵏ⁾(0)/k!.
 ///
-/// Each function is obtained from the differential equation it satisfies, one coefficient at a time (A. Griewank and
-/// A. Walther, *Evaluating Derivatives*, SIAM 2008, chapter 13).
+/// Each function is obtained from the differential equation it satisfies, one coefficient at a time
+/// (A. Griewank and A. Walther, *Evaluating Derivatives*, SIAM 2008, chapter 13).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taylor<S, const N: usize> {
     /// Coefficients, lowest order first.

@@ -7,7 +7,8 @@ fn series(value: f64) -> Series {
     Series { c: [value, 0.7, -0.4, 0.25, 0.6, -0.8, 0.35] }
 }
 
-/// Equal to the accuracy that seven orders of recurrences leave, relative to the larger of the coefficient and 1.
+/// Equal to the accuracy that seven orders of recurrences leave, relative to the larger of the
+/// coefficient and 1.
 fn assert_same(left: Series, right: Series) {
     for (order, (l, r)) in left.c.iter().zip(right.c).enumerate() {
         let bound = 1e-13 * r.abs().max(1.0);

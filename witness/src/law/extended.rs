@@ -1,4 +1,4 @@
-//! The extended system (8) and the Taylor expansion of its drift.
+//! The extended system (3.8) and the Taylor expansion of its drift.
 
 use crate::jet::{Dual, Scalar, Taylor, dot};
 use crate::plant::{self, Input, STATES, VehicleParameters, index};
@@ -22,7 +22,8 @@ pub struct Expansion {
 }
 
 impl Expansion {
-    /// Expands ẋ = f̄(x), ū = 0, from (x, ζ): each pass through f̄ makes one more coefficient of ẋ exact, and so one of x.
+    /// Expands ẋ = f̄(x), ū = 0, from (x, ζ): each pass through f̄ makes one more coefficient of ẋ
+    /// exact, and so one of x.
     pub fn of(vehicle: &VehicleParameters, x: &[f64; STATES], zeta: &[f64; 4]) -> Self {
         let start: [f64; EXTENDED] = std::array::from_fn(|i| if i < STATES { x[i] } else { zeta[i - STATES] });
         let mut seeded = start.map(Seeded::constant);
@@ -46,7 +47,7 @@ impl Expansion {
         [self.state[first], self.state[first + 1], self.state[first + 2]]
     }
 
-    /// T of (9) at the expansion's point, N.
+    /// T of (3.5) at the expansion's point, N.
     pub fn thrust(&self, vehicle: &VehicleParameters) -> f64 {
         let start: [f64; EXTENDED] = std::array::from_fn(|i| self.state[i].value());
         let (x, zeta) = split(&start);
@@ -54,7 +55,7 @@ impl Expansion {
     }
 }
 
-/// The constant input fields ḡ of (8): u_ζ drives ζ4, τ drives ω.
+/// The constant input fields ḡ of (3.8): u_ζ drives ζ4, τ drives ω.
 fn input_fields(vehicle: &VehicleParameters) -> [[f64; EXTENDED]; INPUTS] {
     let mut fields = [[0.0; EXTENDED]; INPUTS];
     fields[0][EXTENDED - 1] = 1.0;
@@ -68,7 +69,8 @@ fn split<S: Copy>(state: &[S; EXTENDED]) -> ([S; STATES], [S; 4]) {
     (std::array::from_fn(|i| state[i]), std::array::from_fn(|i| state[STATES + i]))
 }
 
-/// f̄ of (8): the plant under the thrust (9) and no torque, and the compensator's chain (7) without its input.
+/// f̄ of (3.8): the plant under the thrust (3.5) and no torque, and the compensator's chain (3.4)
+/// without its input.
 fn drift<S: Scalar>(vehicle: &VehicleParameters, state: &[S; EXTENDED]) -> [S; EXTENDED] {
     let (x, zeta) = split(state);
     let zero = S::constant(0.0);
@@ -78,7 +80,7 @@ fn drift<S: Scalar>(vehicle: &VehicleParameters, state: &[S; EXTENDED]) -> [S; E
     std::array::from_fn(|i| if i < STATES { rate[i] } else { chain[i - STATES] })
 }
 
-/// T of (9): the thrust under which v̇3 = ζ1.
+/// T of (3.5): the thrust under which v̇3 = ζ1.
 fn thrust<S: Scalar>(vehicle: &VehicleParameters, x: &[S; STATES], zeta1: S) -> S {
     // f11 is the vertical acceleration of the payload without thrust.
     let f11 = plant::drift(vehicle, x)[index::VELOCITY + 2];

@@ -1,6 +1,7 @@
-//! The 4×4 solve of (11).
+//! The 4×4 solve of (3.10).
 
-/// Solves `matrix` · u = `rhs` by Gaussian elimination with partial pivoting; `None` without a finite, non-zero pivot.
+/// Solves `matrix` · u = `rhs` by Gaussian elimination with partial pivoting; `None` without a
+/// finite, non-zero pivot.
 pub fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut rhs: [f64; N]) -> Option<[f64; N]> {
     for column in 0..N {
         let pivot = (column..N).max_by(|&i, &j| {

@@ -1,15 +1,16 @@
 //! An independent witness of the law: b̄, Ā and ū by Lie derivatives of the extended system.
 //!
-//! The extended state is the paper's (8): the plant's 16 coordinates and ζ, with the thrust (9) substituted, so that the
-//! system is affine in ū = (u_ζ, τ1, τ2, τ3) with constant input fields. The flow of its drift is expanded in a Taylor
-//! series over dual numbers seeded along those four fields. For an output h of relative degree r this gives, without
-//! any formula worked out by hand,
+//! The extended state is that of (3.8): the plant's 16 coordinates and ζ, with the thrust (3.5)
+//! substituted, so that the system is affine in ū = (u_ζ, τ1, τ2, τ3) with constant input fields.
+//! The flow of its drift is expanded in a Taylor series over dual numbers seeded along those four
+//! fields. For an output h of relative degree r this gives, without any formula worked out by hand,
 //!
 //! - ξ: L_f^k h for k < r (k! times the coefficients),
-//! - an entry of b̄, (5): L_f^r h,
-//! - a row of Ā, (5): L_g L_f^(r−1) h (the dual parts),
+//! - an entry of b̄, (3.9): L_f^r h,
+//! - a row of Ā, (3.9): L_g L_f^(r−1) h (the dual parts),
 //!
-//! and ū = Ā⁻¹(−b̄ + ν), (11), by a 4×4 solve. It is slow and literal, and shares no code with the controller.
+//! and ū = Ā⁻¹(−b̄ + ν), (3.10), by a 4×4 solve. It is slow and literal, and shares no code
+//! with the controller.
 
 mod extended;
 mod linear;
@@ -22,7 +23,8 @@ use crate::plant::{VehicleParameters, index};
 use extended::{Expansion, INPUTS};
 use std::f64::consts::{PI, TAU};
 
-/// Gains of one law: for each output, the feedback on its derivatives, low order first (0 above the relative degree).
+/// Gains of one law: for each output, the feedback on its derivatives, low order first (0 above the
+/// relative degree).
 pub type OutputGains = [[f64; 6]; 4];
 
 /// Relative degrees of the path-following outputs (h1, h2, ρ·v − v_d, ψ − ψ_d).
@@ -33,19 +35,20 @@ const TRACK_DEGREES: [usize; 4] = [6, 6, 6, 2];
 /// One evaluation of a law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evaluation<const N: usize> {
-    /// T of (9), N.
+    /// T of (3.5), N.
     pub thrust: f64,
     /// u_ζ, the compensator's input, m/s⁶.
     pub u_zeta: f64,
     /// τ in body axes, N·m.
     pub torque: [f64; 3],
-    /// The outputs and their derivatives below the relative degree, output by output, low order first.
+    /// The outputs and their derivatives below the relative degree, output by output, low order
+    /// first.
     pub xi: [f64; N],
     /// ν, the wanted value of each output's derivative at the relative degree.
     pub nu: [f64; 4],
-    /// b̄ of (5).
+    /// b̄ of (3.9).
     pub b: [f64; 4],
-    /// Ā of (5), by rows; columns u_ζ, τ1, τ2, τ3.
+    /// Ā of (3.9), by rows; columns u_ζ, τ1, τ2, τ3.
     pub a: [[f64; 4]; 4],
 }
 
@@ -72,9 +75,10 @@ impl std::fmt::Display for Singular {
 
 impl std::error::Error for Singular {}
 
-/// The path-following law (11), (13), (15): ν = −K ξ − (K̃ ξ̃, 0).
+/// The path-following law (3.10), (5.3), (5.4): ν = −K ξ − (K̃ ξ̃, 0).
 ///
-/// `integral` is ξ̃ = ∫(h1, h2, h3) and `integral_gains` the diagonal of K̃. ψ − ψ_d is taken in (−π, π].
+/// `integral` is ξ̃ = ∫(h1, h2, h3) and `integral_gains` the diagonal of K̃. ψ − ψ_d is taken
+/// in (−π, π].
 ///
 /// # Errors
 /// [`Singular`] where Ā has no finite inverse.
@@ -117,7 +121,8 @@ impl Reference {
     #[must_use]
     pub fn circle(radius: f64, p3: f64, rate: f64, time: f64) -> Self {
         let (sin, cos) = (rate * time).sin_cos();
-        // Each derivative of a sine is Ω times the sine a quarter turn on; n2 is a quarter turn ahead of n1.
+        // Each derivative of a sine is Ω times the sine a quarter turn on; n2 is a quarter turn
+        // ahead of n1.
         let derivatives = |ahead: usize| {
             std::array::from_fn(|order| {
                 let value = [sin, cos, -sin, -cos][(order + ahead) % 4];
@@ -130,7 +135,8 @@ impl Reference {
     }
 }
 
-/// The trajectory-tracking law of Section V: outputs (p, ψ), ν = y_ref⁽ʳ⁾ − Σ k (y − y_ref)⁽ʲ⁾.
+/// The trajectory-tracking law of Section V: outputs (p, ψ), ν = y_ref⁽ʳ⁾ − Σ k (y −
+/// y_ref)⁽ʲ⁾.
 ///
 /// ξ holds the outputs themselves, not their errors. ψ − ψ_ref is taken in (−π, π].
 ///

@@ -1,8 +1,10 @@
-//! Paths as the witness takes them: two functions of the position, and a speed and a yaw along them.
+//! Paths as the witness takes them: two functions of the position, and a speed and a yaw along
+//! them.
 
 use crate::jet::{Dual, Scalar, cross, dot, scale};
 
-/// A path C = {h1 = 0, h2 = 0}, given by formulas over any scalar; derivatives and the tangent (3) follow from them.
+/// A path C = {h1 = 0, h2 = 0}, given by formulas over any scalar; derivatives and the tangent
+/// (3.2) follow from them.
 pub trait WitnessPath {
     /// h1 and h2 at a position in N (m).
     fn surfaces<S: Scalar>(&self, p: [S; 3]) -> [S; 2];
@@ -13,12 +15,12 @@ pub trait WitnessPath {
     /// ψ_d, the wanted yaw, rad; `tangent` is the unit tangent at `p`.
     fn yaw<S: Scalar>(&self, p: [S; 3], tangent: [S; 3]) -> S;
 
-    /// 1 if the path is flown along the tangent of (3), −1 if against it.
+    /// 1 if the path is flown along the tangent of (3.2), −1 if against it.
     fn direction(&self) -> f64 {
         1.0
     }
 
-    /// The unit tangent at `p`: that of (3), unless the path states another off the curve.
+    /// The unit tangent at `p`: that of (3.2), unless the path states another off the curve.
     fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
         let [h1, h2] = self.surfaces(std::array::from_fn(|axis| Dual::<S, 3>::variable(p[axis], axis)));
         let normal = cross(h1.parts, h2.parts);
@@ -27,14 +29,15 @@ pub trait WitnessPath {
     }
 }
 
-/// The outputs (4): h1, h2, ρ·v − v_d, ψ − ψ_d, the last not wrapped.
+/// The outputs (3.3): h1, h2, ρ·v − v_d, ψ − ψ_d, the last not wrapped.
 pub fn outputs<S: Scalar, P: WitnessPath>(path: &P, p: [S; 3], v: [S; 3], psi: S) -> [S; 4] {
     let [h1, h2] = path.surfaces(p);
     let tangent = path.tangent(p);
     [h1, h2, dot(tangent, v) - path.speed(p), psi - path.yaw(p, tangent)]
 }
 
-/// The horizontal circle of (16), flown along the tangent printed there, (−p2, p1, 0)/r, with ψ_d = 0.
+/// The horizontal circle (15.7), flown along the tangent printed there, (−p2, p1, 0)/r, with
+/// ψ_d = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     /// d1, m.
@@ -63,8 +66,8 @@ impl WitnessPath for Circle {
     }
 }
 
-/// An elliptic cylinder cut by a sloping plane, h1 = (p1/a)² + (p2/b)² − 1 and h2 = p3 − c0 − c1 p1, with the nose along
-/// the tangent.
+/// An elliptic cylinder cut by a sloping plane, h1 = (p1/a)² + (p2/b)² − 1 and h2 = p3 − c0 −
+/// c1 p1, with the nose along the tangent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
     /// Half axis along n1, m.
@@ -93,8 +96,8 @@ impl WitnessPath for Ellipse {
     }
 }
 
-/// A superellipse on a bent sheet, h1 = (p1/a)⁴ + (p2/b)⁴ − 1 and h2 = p3 − c0 − ½ sin(p1/2), with v_d = v0 + v1 p1/a
-/// and ψ_d = 0.2 p1.
+/// A superellipse on a bent sheet, h1 = (p1/a)⁴ + (p2/b)⁴ − 1 and h2 = p3 − c0 − ½
+/// sin(p1/2), with v_d = v0 + v1 p1/a and ψ_d = 0.2 p1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bent {
     /// Half width along n1, m.
