@@ -1,4 +1,5 @@
-//! Writes the dialect's Rust code from its XML, and the number by which both ends know that they speak the same one.
+//! Writes the dialect's Rust code from its XML, and the number by which both ends know that they
+//! speak the same one.
 
 use std::path::PathBuf;
 use std::{env, fs};
@@ -11,8 +12,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("cargo:rustc-check-cfg=cfg(feature, values(\"arbitrary\", \"serde\", \"ts-rs\"))");
     let out = PathBuf::from(env::var("OUT_DIR").map_err(|_| "cargo did not set OUT_DIR")?);
     mavlink_bindgen::generate(mavlink_bindgen::XmlDefinitions::Files(vec![XML]), &out)?;
-    // Included, so that the generated file stays a file of its own with its inner attributes; bindgen's mod.rs is for its own
-    // crate's features.
+    // Included, so that the generated file stays a file of its own with its inner attributes;
+    // bindgen's mod.rs is for its own crate's features.
     fs::write(out.join("modules.rs"), "pub mod slung_load;")?;
     fs::write(out.join("fingerprint.rs"), fingerprint(&fs::read(XML)?).to_string())?;
     Ok(())

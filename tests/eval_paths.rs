@@ -1,4 +1,5 @@
-//! `hil-sim eval` with paths other than the circle: the golden ellipse and bent curve, built in and by formula.
+//! `hil-sim eval` with paths other than the circle: the golden ellipse and bent curve, built in and
+//! by formula.
 
 use hil_sim::study::eval::evaluate;
 use serde_json::{Value, json};

@@ -1,9 +1,10 @@
-//! The plant against the reference vectors of model (1).
+//! The plant against the reference vectors of the model (2.8).
 
 use tests::golden::{self, relative_error};
 use witness::plant::{self, Input, VehicleParameters};
 
-/// Required of each of f, G and ẋ, as ‖Δ‖/‖·‖. The vectors are exact to half an ulp and f64 evaluation of (1) loses a few.
+/// Required of each of f, G and ẋ, as ‖Δ‖/‖·‖. The vectors are exact to half an ulp and
+/// f64 evaluation of (2.8) loses a few.
 const BOUND: f64 = 1e-13;
 
 #[test]

@@ -1,4 +1,5 @@
-//! The witness of the law against the reference vectors and closed loops, and the structure the theory gives it.
+//! The witness of the law against the reference vectors and closed loops, and the structure the
+//! theory gives it.
 
 use hil_sim::world::integrate::{Tolerance, adaptive};
 use tests::golden::{self, Follow, padded, relative_error};
@@ -6,8 +7,8 @@ use witness::jet::Scalar;
 use witness::law::{Bent, Circle, Ellipse, Evaluation, Operating, OutputGains, Reference, Singular, WitnessPath};
 use witness::plant::{self, Input, VehicleParameters};
 
-/// Required of b̄, Ā and ū, as ‖Δ‖/‖·‖. Most of it is for ū where −b̄ + ν nearly cancels: in f64 the equations
-/// themselves, evaluated by any method, lose up to 5e-12 there.
+/// Required of b̄, Ā and ū, as ‖Δ‖/‖·‖. Most of it is for ū where −b̄ + ν nearly
+/// cancels: in f64 the equations themselves, evaluated by any method, lose up to 5e-12 there.
 const BOUND: f64 = 1e-9;
 
 /// The largest error of each quantity over a file.
@@ -149,7 +150,8 @@ fn tracking_vectors() {
     println!("witness on track, worst relative errors: {worst}");
 }
 
-/// det Ā in closed form, from THEORY.md's section on singularities: nothing in the witness knows it.
+/// det Ā in closed form, from THEORY.md's section on singularities: nothing in the witness knows
+/// it.
 #[test]
 fn decoupling_matrix_has_the_determinant_of_the_theory() {
     let file = golden::follow("ellipse");
@@ -193,7 +195,8 @@ fn determinant(m: &[[f64; 4]; 4]) -> f64 {
         - m[0][3] * minor([1, 2, 3], [0, 1, 2])
 }
 
-/// Free fall, ζ1 = g, makes Ā singular (the theory's first singularity): no value may come out as if it were sound.
+/// Free fall, ζ1 = g, makes Ā singular (the theory's first singularity): no value may come out as
+/// if it were sound.
 #[test]
 fn free_fall_is_singular() {
     let vehicle = VehicleParameters::default();
@@ -226,8 +229,9 @@ impl WitnessPath for Disguised {
     }
 }
 
-/// The steady motion along (16)'s circle at `speed` against the printed tangent, as it passes (0, r, p3) with ψ = 0:
-/// everything turns about n3 at Ω = −speed/r, which gives v̇, then q, then b3, from THEORY.md's two lines.
+/// The steady motion along the circle (15.7) at `speed` against the printed tangent, as it passes
+/// (0, r, p3) with ψ = 0: everything turns about n3 at Ω = −speed/r, which gives v̇, then q, then
+/// b3, from THEORY.md's two lines.
 fn steady(vehicle: &VehicleParameters, radius: f64, p3: f64, speed: f64) -> [f64; 16] {
     let turn = speed / radius;
     let pull = [-speed * turn, -vehicle.gravity]; // λ q, along n2 and n3
@@ -249,7 +253,8 @@ fn steady(vehicle: &VehicleParameters, radius: f64, p3: f64, speed: f64) -> [f64
     x
 }
 
-/// On the path, moving along it as wanted, ξ = 0, and ū is the same for any formulas with the same zero set.
+/// On the path, moving along it as wanted, ξ = 0, and ū is the same for any formulas with the same
+/// zero set.
 #[test]
 fn input_on_the_path_does_not_depend_on_its_formulas() {
     let vehicle = VehicleParameters::default();
@@ -271,7 +276,8 @@ fn input_on_the_path_does_not_depend_on_its_formulas() {
     }
 }
 
-/// The reference closed loops, flown again by the witness in continuous time: plant, compensator, integral and law.
+/// The reference closed loops, flown again by the witness in continuous time: plant, compensator,
+/// integral and law.
 #[test]
 fn closed_loops() {
     for (name, run) in golden::trajectories() {

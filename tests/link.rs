@@ -1,4 +1,5 @@
-//! The link: official messages are what MAVLink's own tools know, frames survive noise, and no byte is able to do harm.
+//! The link: official messages are what MAVLink's own tools know, frames survive noise, and no byte
+//! is able to do harm.
 
 use link::dialect::*;
 use link::{Decoder, Encoder, MavMessage};
@@ -27,8 +28,8 @@ fn state(sequence: u32) -> MavMessage {
     })
 }
 
-/// `CRC_EXTRA` is a checksum of a message's layout: with the official number and the official one of these, a message is the official one.
-/// Numbers from MAVLink's common.xml by pymavlink 2.4.50.
+/// `CRC_EXTRA` is a checksum of a message's layout: with the official number and the official one
+/// of these, a message is the official one. Numbers from MAVLink's common.xml by pymavlink 2.4.50.
 #[test]
 fn standard_messages_have_the_official_layout() {
     for (id, extra) in
@@ -71,7 +72,8 @@ fn a_wrong_length_keeps_nobody_waiting() {
 }
 
 proptest! {
-    /// Whatever came before, at most two more frames are lost: one that the noise has begun to look like, and its rest.
+    /// Whatever came before, at most two more frames are lost: one that the noise has begun to look
+    /// like, and its rest.
     #[test]
     fn noise_is_recovered_from(noise in prop::collection::vec(any::<u8>(), 0..600)) {
         let mut encoder = Encoder::new(link::STATION);

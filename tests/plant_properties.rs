@@ -1,5 +1,5 @@
-//! What holds for the plant whatever the state (balances of energy and momentum, symmetry) and for the integrators
-//! (their orders).
+//! What holds for the plant whatever the state (balances of energy and momentum, symmetry) and for
+//! the integrators (their orders).
 
 use hil_sim::world::integrate::{self, Tolerance};
 use proptest::prelude::*;
@@ -55,7 +55,8 @@ fn norm(a: &[f64]) -> f64 {
     a.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A state moving as the plant says it does, so that a function of it carries its exact time derivative.
+/// A state moving as the plant says it does, so that a function of it carries its exact time
+/// derivative.
 fn moving(vehicle: &VehicleParameters, x: &State, input: &Input) -> [Dual<f64, 1>; STATES] {
     let rate = plant::derivative(vehicle, x, input);
     std::array::from_fn(|i| Dual { value: x[i], parts: [rate[i]] })
@@ -65,8 +66,9 @@ proptest! {
     // A failing case is printed; it belongs in a test of its own, not in a file beside this one.
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Newton and Euler, from the definitions of energy and momentum alone: power in is energy gained, force is
-    /// momentum gained, torque is angular momentum gained. With the charts' kinematics this is all of model (1).
+    /// Newton and Euler, from the definitions of energy and momentum alone: power in is energy
+    /// gained, force is momentum gained, torque is angular momentum gained. With the charts'
+    /// kinematics this is all of the model (2.8).
     #[test]
     fn inputs_and_gravity_account_for_energy_and_momentum(
         vehicle in vehicle(), x in state(), input in input(),
@@ -111,7 +113,8 @@ proptest! {
         }
     }
 
-    /// The chart's rates are those of the directions: q̇ by the chart is the derivative of q, and Ṙ = R ω^.
+    /// The chart's rates are those of the directions: q̇ by the chart is the derivative of q, and
+    /// Ṙ = R ω^.
     #[test]
     fn chart_rates_turn_rod_and_body(vehicle in vehicle(), x in state(), input in input()) {
         let moving = moving(&vehicle, &x, &input);
@@ -133,7 +136,8 @@ proptest! {
         }
     }
 
-    /// No direction in the horizontal plane is special: a scene turned about n3 moves as the scene does, turned.
+    /// No direction in the horizontal plane is special: a scene turned about n3 moves as the scene
+    /// does, turned.
     #[test]
     fn turning_about_n3_turns_the_motion(
         vehicle in vehicle(), x in state(), input in input(), angle in -3.0..3.0,
@@ -220,7 +224,8 @@ impl Scene {
     }
 }
 
-/// A swinging, spinning start with all motions of order one, far from the chart's ends for the two seconds flown.
+/// A swinging, spinning start with all motions of order one, far from the chart's ends for the two
+/// seconds flown.
 const TUMBLING: State = [1.0, -2.0, -10.0, 0.3, -0.2, 0.2, -0.1, 0.5, 0.5, -0.4, 0.3, 0.6, -0.5, 0.4, -0.3, 0.7];
 const DURATION: f64 = 2.0;
 
@@ -228,8 +233,8 @@ fn unforced(_: f64, x: &State) -> State {
     plant::drift(&VehicleParameters::default(), x)
 }
 
-/// What the unforced motion keeps: energy; linear momentum, less what the weight adds; the n3 component of the moment of
-/// momentum, about which no weight turns; the body's angular momentum.
+/// What the unforced motion keeps: energy; linear momentum, less what the weight adds; the n3
+/// component of the moment of momentum, about which no weight turns; the body's angular momentum.
 fn invariants(t: f64, x: &State) -> [f64; 8] {
     let vehicle = VehicleParameters::default();
     let [p1, p2, p3] = plant::momentum(&vehicle, x);
@@ -293,12 +298,14 @@ fn unforced_plant_conserves_energy_and_momentum_to_the_order_of_rk4() {
 fn adaptive_integration_conserves_energy_and_momentum() {
     let (start, end) = (invariants(0.0, &TUMBLING), invariants(DURATION, &reference()));
     for (before, after) in start.into_iter().zip(end) {
-        // Some tens of steps, each within 1e-14 of coordinates of the order of 10, and energies of some hundred joules.
+        // Some tens of steps, each within 1e-14 of coordinates of the order of 10, and energies of
+        // some hundred joules.
         assert!((after - before).abs() < 1e-11 * before.abs().max(1.0), "{before} {after}");
     }
 }
 
-/// The error of an adaptive method of order p costs evaluations in proportion to its (−1/p)-th power.
+/// The error of an adaptive method of order p costs evaluations in proportion to its (−1/p)-th
+/// power.
 #[test]
 fn adaptive_integration_is_of_high_order() {
     let end = reference();
@@ -316,12 +323,14 @@ fn adaptive_integration_is_of_high_order() {
     let ((coarse, few), (fine, many)) = (fly(1e-5), fly(1e-11));
     let order = (coarse / fine).ln() / (many / few).ln();
     println!("adaptive: error {coarse:.1e} in {few}, {fine:.1e} in {many} evaluations: order {order:.2}");
-    // Of order 8 once the steps are many; at so few of them the step control, cautious at first, shows as more.
+    // Of order 8 once the steps are many; at so few of them the step control, cautious at first,
+    // shows as more.
     assert!(order > 7.0, "{order}");
     assert!(fine < 1e-9, "{fine}");
 }
 
-/// ẋ = x cos t has the solution e^(sin t): a system that depends on time keeps both methods' orders.
+/// ẋ = x cos t has the solution e^(sin t): a system that depends on time keeps both methods'
+/// orders.
 #[test]
 fn integrators_keep_their_order_when_time_enters() {
     let f = |t: f64, x: &[f64; 1]| [x[0] * t.cos()];
@@ -341,7 +350,8 @@ fn integrators_keep_their_order_when_time_enters() {
     println!("adaptive with time: error {:.1e} in {} evaluations", x[0] - exact, evaluations.get());
     // A handful of steps, each within the tolerance.
     assert!((x[0] - exact).abs() < 1e-11, "{}", x[0] - exact);
-    // At order 8 the tolerance takes about ten steps of twelve evaluations; a wrong stage time takes thousands.
+    // At order 8 the tolerance takes about ten steps of twelve evaluations; a wrong stage time
+    // takes thousands.
     assert!(evaluations.get() < 500, "{}", evaluations.get());
 }
 

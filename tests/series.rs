@@ -1,6 +1,7 @@
-//! Every function of the series arithmetic, in every order, against Cauchy's integral: the Taylor coefficients of an analytic
-//! f are cₖ = (1/2π) ∫ f(r e^{iθ}) r⁻ᵏ e^{−ikθ} dθ, which the trapezoidal rule gives to rounding in complex arithmetic
-//! that shares nothing with the recurrences under test.
+//! Every function of the series arithmetic, in every order, against Cauchy's integral: the Taylor
+//! coefficients of an analytic f are cₖ = (1/2π) ∫ f(r e^{iθ}) r⁻ᵏ e^{−ikθ} dθ, which
+//! the trapezoidal rule gives to rounding in complex arithmetic that shares nothing with the
+//! recurrences under test.
 
 use controller::{Analytic, Real, Series};
 use controller::{Dual, variables};
@@ -8,8 +9,8 @@ use num_complex::Complex64;
 
 /// Number of orders under test: all that the library has.
 const N: usize = 7;
-/// Coefficients of the arguments x(t) and y(t): values near 1.3 and 0.7, no coefficient zero, and no zero within
-/// [`RADIUS`] of the origin.
+/// Coefficients of the arguments x(t) and y(t): values near 1.3 and 0.7, no coefficient zero, and
+/// no zero within [`RADIUS`] of the origin.
 const X: [f64; N] = [1.3, 0.4, -0.3, 0.25, 0.15, -0.2, 0.1];
 const Y: [f64; N] = [0.7, -0.2, 0.15, 0.3, -0.1, 0.05, -0.15];
 /// Of the circle of integration: inside every convergence radius here.
@@ -83,7 +84,8 @@ fn series<T: Real>(c: &[f64; N]) -> Series<T, N> {
     Series(c.map(T::lit))
 }
 
-/// Each coefficient's error, relative to the largest coefficient up to its order (a recurrence can't keep more than that).
+/// Each coefficient's error, relative to the largest coefficient up to its order (a recurrence
+/// can't keep more than that).
 fn assert_close<T: Real>(name: &str, got: &Series<T, N>, expected: &[f64; N], bound: f64) {
     let mut scale: f64 = 0.0;
     for (k, (got, expected)) in got.0.iter().zip(expected).enumerate() {
@@ -99,8 +101,9 @@ fn check_values<T: Real>(bound: f64) {
     }
 }
 
-/// A dual number's derivative in direction (u, v), against the extra derivative of a function of t + s along it: with
-/// u = ẋ and v = ẏ that is the time derivative, which the series knows by itself.
+/// A dual number's derivative in direction (u, v), against the extra derivative of a function of
+/// t + s along it: with u = ẋ and v = ẏ that is the time derivative, which the series knows by
+/// itself.
 fn check_partials<T: Real>(bound: f64) {
     const M: usize = N - 1;
     for (name, complex, function) in functions::<T, Dual<Series<T, M>, 2>>() {
@@ -109,7 +112,8 @@ fn check_partials<T: Real>(bound: f64) {
         let result = function(x, y);
         let [rate_x, rate_y] = along.map(|c| c.differentiate::<M>());
         let rate = result.partials[0] * rate_x + result.partials[1] * rate_y;
-        // The derivative's coefficient k is k + 1 times the function's coefficient k + 1; of the last nothing is known.
+        // The derivative's coefficient k is k + 1 times the function's coefficient k + 1; of the
+        // last nothing is known.
         let exact = cauchy(complex);
         let mut expected = [0.0; N];
         for (k, c) in exact.iter().enumerate().skip(1) {
@@ -125,7 +129,8 @@ fn check_partials<T: Real>(bound: f64) {
     }
 }
 
-/// Some tens of roundings; unit roundoff is 1.1e-16 and 6e-8. In f64 the integral's own rounding, ε r⁻⁶, is 5e-15 of it.
+/// Some tens of roundings; unit roundoff is 1.1e-16 and 6e-8. In f64 the integral's own rounding, ε
+/// r⁻⁶, is 5e-15 of it.
 const F64: f64 = 2e-14;
 const F32: f64 = 4e-6;
 

@@ -1,4 +1,5 @@
-//! Hands the linker the memory map of the chosen board, cortex-m-rt's script that reads it, and defmt's.
+//! Hands the linker the memory map of the chosen board, cortex-m-rt's script that reads it, and
+//! defmt's.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};

@@ -1,4 +1,5 @@
-//! Simulator of a slung load and its path-following law: plant, scenarios, flights, reports, and an independent witness.
+//! Simulator of a slung load and its path-following law: plant, scenarios, flights, reports, and an
+//! independent witness.
 
 pub mod describe;
 pub mod fly;

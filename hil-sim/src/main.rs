@@ -1,4 +1,5 @@
-//! The program: flies scenarios with the controller in the loop, and evaluates the law for other programs.
+//! The program: flies scenarios with the controller in the loop, and evaluates the law for other
+//! programs.
 
 mod cli;
 

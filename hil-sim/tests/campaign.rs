@@ -1,11 +1,13 @@
-//! Campaigns as their users meet them: the same table whatever the threads, interruptions and shards.
+//! Campaigns as their users meet them: the same table whatever the threads, interruptions and
+//! shards.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-/// Flights of a second through everything that is random: start, vehicle, path, gusts, noise, timing, a rotor.
+/// Flights of a second through everything that is random: start, vehicle, path, gusts, noise,
+/// timing, a rotor.
 const CAMPAIGN: &str = r#"
 title = "short"
 [scenario]

@@ -36,7 +36,8 @@ fn a_circle_asks_for_what_a_steady_turn_needs() {
     near(report.lap.sharpest().curvature(), 1.0 / radius, 1e-12);
     assert!(report.branches.is_none());
 
-    // Centripetal force through the rod: tan(rod angle) = v²/(r g); the UAV turns on a circle wider by L sin(angle).
+    // Centripetal force through the rod: tan(rod angle) = v²/(r g); the UAV turns on a circle wider
+    // by L sin(angle).
     let centripetal = speed * speed / radius;
     let force = centripetal.hypot(g);
     let VehicleParams { payload_mass, uav_mass, rod_length, .. } = *vehicle().params();
@@ -184,7 +185,8 @@ fn a_speed_or_yaw_that_jumps_is_refused_at_its_place() {
     let branch = [-5.0, 0.0, -10.0];
     let jumps = [
         (profiled("2 + 0.1*atan2(y, x)", "0"), Reason::SpeedJumps { order: 0 }, branch),
-        // Half an angle is half a turn off after a lap; a whole multiple is not, since the law takes whole turns for none.
+        // Half an angle is half a turn off after a lap; a whole multiple is not, since the law
+        // takes whole turns for none.
         (profiled("1", "0.5*atan2(y, x)"), Reason::YawJumps { order: 0 }, branch),
         (profiled("1", "-2.5*atan2(y, x)"), Reason::YawJumps { order: 0 }, branch),
     ];
@@ -251,7 +253,8 @@ fn limits_are_named_with_their_place() {
     let slow = check(&loop_(1.0)).unwrap();
     assert!(slow.excesses.is_empty(), "{slow}");
     let fast = check(&loop_(5.0)).unwrap();
-    // The payload's own acceleration at the side of the ellipse, κ v² = 25·6/16, is nearly level there.
+    // The payload's own acceleration at the side of the ellipse, κ v² = 25·6/16, is nearly level
+    // there.
     let rod = fast.excesses.iter().find(|excess| excess.quantity == "rod angle").unwrap();
     assert!(rod.place.position.x.abs() > 5.0, "{fast}");
     let fastest = slow.fastest.unwrap();
@@ -279,7 +282,8 @@ fn closed_curves_of_many_shapes_are_accepted() {
     }
 }
 
-/// Double normals of known curves: an ellipse's minor axis (a saddle of the distance), and a flat bone's waist.
+/// Double normals of known curves: an ellipse's minor axis (a saddle of the distance), and a flat
+/// bone's waist.
 #[test]
 fn branches_are_apart_by_the_shortest_double_normal() {
     let ellipse = check(&implicit("(x/7)^2 + (y/4)^2 - 1", "z + 10")).unwrap();

@@ -1,4 +1,5 @@
-//! Waypoints to curves: known curves come back, wiggles do not, and bad files are refused with their place.
+//! Waypoints to curves: known curves come back, wiggles do not, and bad files are refused with
+//! their place.
 
 use controller::Vector3;
 use hil_sim::describe::course::parse_path;

@@ -1,5 +1,5 @@
-//! The plant on R³ × S² × SO(3) against the plant in the paper's coordinates, against the law's own model, and against
-//! the balances that hold whatever the forces.
+//! The plant on R³ × S² × SO(3) against the plant in the paper's coordinates, against the law's
+//! own model, and against the balances that hold whatever the forces.
 
 use controller::Disturbance;
 use controller::dynamics::Model;
@@ -68,7 +68,8 @@ proptest! {
     // A failing case is printed; it belongs in a test of its own, not in a file beside this one.
     #![proptest_config(ProptestConfig { failure_persistence: None, cases: 1000, ..ProptestConfig::default() })]
 
-    /// Without forces from outside the derivative is (1)'s: the charts' second derivatives by automatic differentiation.
+    /// Without forces from outside the derivative is that of (2.8): the charts' second derivatives
+    /// by automatic differentiation.
     #[test]
     fn unforced_accelerations_are_those_of_the_papers_model(
         vehicle in vehicle(), x in state(), command in command(),
@@ -96,7 +97,8 @@ proptest! {
         let payload = loads.payload_force / payload_mass;
         let apart_rod = (payload - loads.uav_force / uav_mass) / rod_length;
         let across = apart_rod - state.rod * state.rod.dot(&apart_rod);
-        // What of δ lies along the rod changes the tension alone, which d takes: the share of F_Q − F_L m_Q/m_L.
+        // What of δ lies along the rod changes the tension alone, which d takes: the share of F_Q −
+        // F_L m_Q/m_L.
         let along = rod_length * uav_mass / known.total_mass() * state.rod.dot(&apart_rod);
         let disturbance = Disturbance {
             payload: payload - state.rod * along,
@@ -111,8 +113,8 @@ proptest! {
         prop_assert!(apart(&got.body, &expected.body) <= 1e-12);
     }
 
-    /// Power in is energy gained, force is momentum gained, and the moments of all forces are the angular momentum gained:
-    /// Newton and Euler, whatever pulls at the bodies.
+    /// Power in is energy gained, force is momentum gained, and the moments of all forces are the
+    /// angular momentum gained: Newton and Euler, whatever pulls at the bodies.
     #[test]
     fn loads_account_for_energy_and_momentum(
         vehicle in vehicle(), x in state(), command in command(), loads in loads(),
@@ -180,11 +182,13 @@ fn flights_agree_with_the_plant_in_the_papers_coordinates() {
     .into_iter()
     .fold(0.0, f64::max);
     println!("two plants, one second: {worst:.1e}");
-    // Both have errors of order (rate · step)⁴, some 1e-13 at half a millisecond, and their steps' rounding.
+    // Both have errors of order (rate · step)⁴, some 1e-13 at half a millisecond, and their steps'
+    // rounding.
     assert!(worst < 1e-11, "{worst:e}");
 }
 
-/// Falling with its rotors off, tumbled through every chart by constant forces whose work is force times way.
+/// Falling with its rotors off, tumbled through every chart by constant forces whose work is force
+/// times way.
 #[test]
 fn work_of_constant_forces_is_the_energy_gained_to_the_order_of_the_method() {
     let loads = Loads {

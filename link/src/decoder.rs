@@ -9,15 +9,18 @@ const HEADER: usize = 10;
 const CHECKSUM: usize = 2;
 const LONGEST: usize = HEADER + u8::MAX as usize + CHECKSUM;
 
-/// Why a frame was not taken. The search goes on from the byte after its marker, so a frame inside is still found.
+/// Why a frame was not taken. The search goes on from the byte after its marker, so a frame inside
+/// is still found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejected {
-    /// The message is not in the dialect, or is longer than the dialect has it, or asks for a feature unknown here.
+    /// The message is not in the dialect, or is longer than the dialect has it, or asks for a
+    /// feature unknown here.
     Header {
         /// The message's number.
         id: u32,
     },
-    /// Wrong checksum, or a value outside its enumeration: noise on the line, or another version of the dialect.
+    /// Wrong checksum, or a value outside its enumeration: noise on the line, or another version of
+    /// the dialect.
     Checksum {
         /// The message's number.
         id: u32,
@@ -46,7 +49,8 @@ impl Decoder {
         Self { buffer: [0; LONGEST], length: 0 }
     }
 
-    /// Takes one byte; calls `sink` for each message that it completes and each candidate that it shows to be none.
+    /// Takes one byte; calls `sink` for each message that it completes and each candidate that it
+    /// shows to be none.
     pub fn push(&mut self, byte: u8, mut sink: impl FnMut(Result<MavMessage, Rejected>)) {
         if let Some(slot) = self.buffer.get_mut(self.length) {
             *slot = byte;

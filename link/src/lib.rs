@@ -1,7 +1,8 @@
-//! The link between a controller and what gives it states: one MAVLink 2 dialect, and frames found in a stream of bytes.
+//! The link between a controller and what gives it states: one MAVLink 2 dialect, and frames found
+//! in a stream of bytes.
 //!
-//! The messages, with their units and frames, stand in `dialect/slung_load.xml`; [`dialect`] is generated from it. Both
-//! ends use this crate, and neither allocates here.
+//! The messages, with their units and frames, stand in `dialect/slung_load.xml`; [`dialect`] is
+//! generated from it. Both ends use this crate, and neither allocates here.
 #![no_std]
 
 mod convert;
@@ -27,7 +28,8 @@ pub use generated::slung_load::MavMessage;
 
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader};
 
-/// Changes with every change of the dialect: parameter `LINK_DIALECT` is this number, exact as a float.
+/// Changes with every change of the dialect: parameter `LINK_DIALECT` is this number, exact as a
+/// float.
 pub const FINGERPRINT: u32 = include!(concat!(env!("OUT_DIR"), "/fingerprint.rs"));
 
 /// MAVLink address of the controller: system, component (autopilot).

@@ -1,5 +1,5 @@
-//! Model (1), free of charts and with the disturbances: accelerations under a held command. The look ahead and the observers
-//! run on it; the law itself inverts it.
+//! The model (12.1) solved for the accelerations under a held command, free of charts. The look
+//! ahead and the observers run on it; the law itself inverts it.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -20,7 +20,8 @@ pub struct Acceleration<T> {
     pub body: Vector3<T>,
 }
 
-/// λ, the payload's specific force along the rod of `state` under `thrust` (N), without d, m/s²: −(|q̇|² + κ b3·q)/c.
+/// λ, the payload's specific force along the rod of `state` under `thrust` (N), without d, m/s²:
+/// −(|q̇|² + κ b3·q)/c.
 #[inline]
 pub fn lambda<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, thrust: T) -> T {
     let b3: Vector3<T> = state.attitude.column(2).into();
@@ -28,10 +29,13 @@ pub fn lambda<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, thrust: T) -> T {
     -(turning + thrust * vehicle.kappa_per_thrust() * b3.dot(&state.rod)) * vehicle.inverse_coupling()
 }
 
-/// The model at one state. Accelerations are affine in the command: with λ = −(|q̇|² + κ b3·q)/c and κ = T/(m_Q L)
+/// The model at one state. Accelerations are affine in the command: with λ = −(|q̇|² + κ
+/// b3·q)/c and κ = T/(m_Q L)
 ///
 /// ```text
-/// v̇ = g e3 + d − (|q̇|²/c) q − (b3·q) q T/M,   q̈ = δ − |q̇|² q + (b3 − (b3·q) q) T/(m_Q L),   ω̇ = J⁻¹ (J ω × ω + τ_d + τ)
+/// v̇ = g e3 + d − (|q̇|²/c) q − (b3·q) q T/M
+/// q̈ = δ − |q̇|² q + (b3 − (b3·q) q) T/(m_Q L)
+/// ω̇ = J⁻¹ (J ω × ω + τ_d + τ)                                  (2.7)
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a, T> {
@@ -106,7 +110,8 @@ pub fn across<T: Real>((q, w): (Vector3<T>, Vector3<T>)) -> (Vector3<T>, Vector3
     (q, w - q * q.dot(&w))
 }
 
-/// An attitude and its body rate `dt` later at constant `acceleration`, to within the square of the angle turned.
+/// An attitude and its body rate `dt` later at constant `acceleration`, to within the square of the
+/// angle turned.
 #[inline]
 pub fn turn<T: Real>(
     attitude: &Matrix3<T>,

@@ -1,9 +1,12 @@
-//! Yaw ψ of the 2-1-3 Euler angles R = Ry(θ) Rx(φ) Rz(ψ), its rate, and the ω̇3 that gives a wanted ψ̈.
+//! Yaw ψ of the 2-1-3 Euler angles R = Ry(θ) Rx(φ) Rz(ψ), its rate, and the ω̇3 that gives a
+//! wanted ψ̈.
 //!
-//! The second row of R is (y, x, z) = (cosφ sinψ, cosφ cosψ, −sinφ), so with N = x² + y² = cos²φ and n = x ω2 + y ω1
+//! The second row of R is (y, x, z) = (cosφ sinψ, cosφ cosψ, −sinφ), so with N = x² + y² =
+//! cos²φ and n = x ω2 + y ω1
 //!
 //! ```text
-//! ψ = atan2(y, x),   ψ̇ = ω3 − z n/N,   (ẏ, ẋ, ż) = (x ω3 − z ω2, z ω1 − y ω3, y ω2 − x ω1)
+//! ψ = atan2(y, x),   ψ̇ = ω3 − z n/N                            (6.1)
+//! (ẏ, ẋ, ż) = (x ω3 − z ω2, z ω1 − y ω3, y ω2 − x ω1)          (6.2)
 //! ```
 //!
 //! which needs no sine, cosine or tangent. It divides by N, zero where b3 is horizontal along ±n2.
@@ -35,7 +38,7 @@ impl<T: Real> Yaw<T> {
         Self { angle: y.atan2(x), rate, cos_phi_squared, per_n }
     }
 
-    /// The ω̇3, rad/s², that with the given ω̇1, ω̇2 makes ψ̈ = `acceleration`.
+    /// The ω̇3, rad/s², that with the given ω̇1, ω̇2 makes ψ̈ = `acceleration`: (6.3).
     #[inline]
     pub fn body_acceleration(&self, state: &State<T>, omega_dot_1: T, omega_dot_2: T, acceleration: T) -> T {
         let (y, x, z) = (state.attitude.m21, state.attitude.m22, state.attitude.m23);

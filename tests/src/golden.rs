@@ -1,4 +1,5 @@
-//! Reference vectors, computed in binary128 and rounded to f64; `golden/` holds the files. SI units, angles in rad.
+//! Reference vectors, computed in binary128 and rounded to f64; `golden/` holds the files. SI
+//! units, angles in rad.
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -135,7 +136,7 @@ pub struct Track {
     pub ubar: [f64; 4],
 }
 
-/// One evaluation of model (1).
+/// One evaluation of the model (2.8).
 #[derive(Debug, Deserialize)]
 pub struct Plant {
     /// The paper's 16 coordinates.
@@ -216,7 +217,8 @@ pub fn padded(gains: &Gains) -> [[f64; 6]; 4] {
     rows
 }
 
-/// ‖a − b‖/‖b‖, with Euclidean norms; NaN if either is not finite, so that it passes no bound.
+/// ‖a − b‖/‖b‖, with Euclidean norms; NaN if either is not finite, so that it passes no
+/// bound.
 #[must_use]
 pub fn relative_error(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len(), "vectors of different lengths");

@@ -4,8 +4,9 @@ use controller::{ActuatorLimits, Mode, Policy, Request, Sampling, State, Vector3
 
 use crate::flight::{CIRCLE, Flight, LIMITS, PERIOD, deviation, follower, supervise, vehicle};
 
-/// Limits the thrust to 1.05 hover for two seconds at 4.5 m/s, which needs 1.08 of it, and gives what the payload then sinks and overshoots,
-/// m, and the time from the release until it stays within 5 cm of the path, s.
+/// Limits the thrust to 1.05 hover for two seconds at 4.5 m/s, which needs 1.08 of it, and gives
+/// what the payload then sinks and overshoots, m, and the time from the release until it stays
+/// within 5 cm of the path, s.
 fn limited_for_two_seconds(bandwidth: f32, integral: [f32; 3], lag: f64) -> [f64; 3] {
     let sampling = Sampling { rotor_lag: lag as f32, ..Sampling::every(PERIOD as f32) };
     let law = supervise(follower(4.5, bandwidth, sampling, integral), Policy::default());

@@ -1,5 +1,6 @@
-//! The functions of a linked image and who calls whom, read from its instructions: so it holds for the project's code, for
-//! the mathematical library and for the compiler's own routines alike, whoever compiled them.
+//! The functions of a linked image and who calls whom, read from its instructions: so it holds for
+//! the project's code, for the mathematical library and for the compiler's own routines alike,
+//! whoever compiled them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -116,7 +117,8 @@ impl Function {
             match effect {
                 Effect::Other => {}
                 Effect::Stack(bytes) => function.frame += bytes,
-                // Inside the function it is a loop or a choice, but a branch to the very start is a call of itself.
+                // Inside the function it is a loop or a choice, but a branch to the very start is a
+                // call of itself.
                 Effect::Branch(to) if to > start && to < end => {}
                 Effect::Branch(to) => drop(function.calls.insert(to)),
                 Effect::Indirect => function.obstacle = Some("it calls or jumps through a register"),

@@ -33,7 +33,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// Builds the bench. If a panic is reachable it builds once more without that proof, for the other numbers' sake.
+    /// Builds the bench. If a panic is reachable it builds once more without that proof, for the
+    /// other numbers' sake.
     pub fn build(toolchain: &Toolchain) -> Result<Self> {
         let panic_free = match link(toolchain, &[])? {
             Ok(()) => true,
@@ -81,7 +82,8 @@ fn link(toolchain: &Toolchain, features: &[&str]) -> Result<Result<(), String>> 
     Ok(if output.status.success() { Ok(()) } else { Err(message) })
 }
 
-/// Names of the ARM run-time ABI (`__aeabi_dadd`, `__aeabi_f2d`, …) and of the compiler's own (`__adddf3`, `__extendsfdf2`, …).
+/// Names of the ARM run-time ABI (`__aeabi_dadd`, `__aeabi_f2d`, …) and of the compiler's own
+/// (`__adddf3`, `__extendsfdf2`, …).
 fn is_soft_double(name: &str) -> bool {
     match name.strip_prefix("__aeabi_") {
         Some(name) => {

@@ -20,7 +20,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measures the control step on the emulated Cortex-M4F and M7, and proves that host and target agree bit for bit.
+    /// Measures the control step on the emulated Cortex-M4F and M7, and proves that host and target
+    /// agree bit for bit.
     #[command(after_help = "Fails if a number exceeds firmware/bench/expected.json or a proof does not hold.\n\n\
         Examples:\n  cargo xtask target\n  cargo xtask target --json\n  cargo xtask target --refresh")]
     Target {

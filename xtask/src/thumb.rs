@@ -1,4 +1,5 @@
-//! What a Thumb-2 instruction does to the stack pointer and to the flow of control: enough to bound the stack.
+//! What a Thumb-2 instruction does to the stack pointer and to the flow of control: enough to bound
+//! the stack.
 //!
 //! Encodings: ARMv7-M Architecture Reference Manual, A7.7.
 
@@ -17,7 +18,8 @@ pub enum Effect {
     UnknownStack,
 }
 
-/// The effect of the instruction at `address`, and its length in bytes. `second` is its second half if it has one.
+/// The effect of the instruction at `address`, and its length in bytes. `second` is its second half
+/// if it has one.
 pub fn decode(address: u32, first: u16, second: u16) -> (Effect, u32) {
     // The prefixes 11101, 11110 and 11111 start an instruction of 32 bits.
     if first >> 11 >= 0b11101 { (wide(address, first, second), 4) } else { (narrow(address, first), 2) }

@@ -1,4 +1,5 @@
-//! A compiler for thumbv7em: rustup's installed target, or else a system compiler that builds the core library itself.
+//! A compiler for thumbv7em: rustup's installed target, or else a system compiler that builds the
+//! core library itself.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

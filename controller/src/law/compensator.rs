@@ -1,10 +1,11 @@
-//! The dynamic compensator (7): ζ, its propagation over a sample, and the ζ that takes over a motion at hand.
+//! The dynamic compensator (3.4): ζ, its propagation over a sample, and the ζ that takes over a
+//! motion at hand.
 //!
 //! ζ1 stands for v̇3, and ζ1˙ = ζ2, ζ2˙ = ζ3, ζ3˙ = ζ4, ζ4˙ = u_ζ. **Hover is ζ = 0.**
 
 use model::{Disturbance, Real, State, Vehicle, dynamics::lambda};
 
-/// The integrator chain (7) over `dt` with u_ζ held: exact.
+/// The integrator chain over `dt` with u_ζ held, exact (11.4).
 #[inline(never)]
 pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {
     let half = dt * T::lit(1.0 / 2.0);
@@ -19,7 +20,8 @@ pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {
     ]
 }
 
-/// The ζ that takes over a motion at hand under `thrust`, N: (v̇3, 0, 0, 0), for which (9) returns this thrust.
+/// The ζ that takes over a motion at hand under `thrust`, N: (v̇3, 0, 0, 0), for which (3.5)
+/// returns this thrust (11.8).
 pub fn continuing<T: Real>(
     vehicle: &Vehicle<T>,
     state: &State<T>,

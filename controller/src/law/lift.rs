@@ -1,26 +1,29 @@
-//! Lift: from the state and ζ to the payload's Taylor series, p to p⁽⁵⁾, with one line of algebra an order.
+//! Lift: from the state and ζ to the payload's Taylor series, p to p⁽⁵⁾, with one line of
+//! algebra an order.
 //!
-//! With λ the payload's specific force along the rod, s = λ q, κ = T/(m_Q L) and c = M/(m_Q L), model (1) reads, free of charts
-//! and with the [disturbances](crate::sampled::observer) d and δ (zero in the paper),
+//! With λ the payload's specific force along the rod, s = λ q, κ = T/(m_Q L) and c = M/(m_Q L),
+//! the model with the [disturbances](crate::sampled::observer) d and δ is
 //!
 //! ```text
 //! v̇ = g e3 + d + s,           s3 = ζ1 − g − d3
-//! q̈ = κ b3 + c s + δ,         κ (b3·q) = −(|q̇|² + c λ + δ·q)
+//! q̈ = κ b3 + c s + δ,         κ (b3·q) = −(|q̇|² + c λ + δ·q)                    (12.1)
 //! ```
 //!
-//! Each time derivative of these lines is linear in the highest derivative it brings: λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1} − d3⁽ⁿ⁾,
-//! κ⁽ⁿ⁾ from the last equation, q⁽ⁿ⁺²⁾ from the pendulum line, and p⁽ⁿ⁺²⁾ = s⁽ⁿ⁾ + d⁽ⁿ⁾. Of d and δ the first derivatives are known,
-//! and the others zero.
-//! It divides by q3 and by b3·q, the paper's singularities α, β = ±π/2 and b3 ⊥ q.
+//! Each time derivative of these lines is linear in the highest derivative it brings, (4.1) to
+//! (4.7) with (12.2): λ⁽ⁿ⁾ follows from s3⁽ⁿ⁾ = ζ_{n+1} − d3⁽ⁿ⁾, κ⁽ⁿ⁾
+//! from the last equation, q⁽ⁿ⁺²⁾ from the pendulum line, and p⁽ⁿ⁺²⁾ = s⁽ⁿ⁾ +
+//! d⁽ⁿ⁾. Of d and δ the first derivatives are known, and the others zero. It divides by q3 and
+//! by b3·q, which are zero where the rod is horizontal and where the thrust is across it.
 
 use model::{Disturbance, Real, Series, State, Vehicle};
 use nalgebra::Vector3;
 
-/// The payload's coordinates p1, p2, p3 as series of order 6 in time. The sixth coefficient is zero: that order holds
-/// the input, which outputs see only through their gradients.
+/// The payload's coordinates p1, p2, p3 as series of order 6 in time. The sixth coefficient is
+/// zero: that order holds the input, which outputs see only through their gradients.
 pub type PositionSeries<T> = [Series<T, 7>; 3];
 
-/// The payload's motion to fifth order, with what [`lower`](crate::law::lower::lower) needs to go back.
+/// The payload's motion to fifth order, with what [`lower`](crate::law::lower::lower) needs to go
+/// back.
 #[derive(Clone, Copy, Debug)]
 pub struct Lift<T> {
     /// p in N, m.
@@ -42,7 +45,7 @@ pub struct Lift<T> {
 }
 
 impl<T: Real> Lift<T> {
-    /// Thrust (9), T = κ m_Q L, N.
+    /// Thrust (3.5), T = κ m_Q L, N.
     #[inline]
     pub fn thrust(&self, vehicle: &Vehicle<T>) -> T {
         self.kappa * vehicle.thrust_per_kappa()

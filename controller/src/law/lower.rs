@@ -3,20 +3,23 @@
 //! The lift's inverse, one order up. With s = λ q and primes for time derivatives,
 //!
 //! ```text
-//! s⁗ = p⁽⁶⁾ = λ⁗ q + 4 λ‴ q′ + 6 λ″ q″ + 4 λ′ q‴ + λ q⁗,   q·q⁗ = −(4 q′·q‴ + 3 |q″|²)
-//! q⁗ = κ″ b3 + 2 κ′ b3′ + κ b3″ + c s″,                     b3″ = R (ω × (ω × e3)) + ω̇2 b1 − ω̇1 b2
+//! p⁽⁶⁾ = s⁗ = λ⁗ q + 4 λ‴ q′ + 6 λ″ q″ + 4 λ′ q‴ + λ q⁗
+//! q·q⁗ = −(4 q′·q‴ + 3 |q″|²)                                   (7.1)
+//! q⁗ = κ″ b3 + 2 κ′ b3′ + κ b3″ + c s″
+//! b3″ = R (ω × (ω × e3)) + ω̇2 b1 − ω̇1 b2                        (7.3)
 //! ```
 //!
-//! The product with q gives λ⁗, hence q⁗; the products with b1 and b2 give ω̇2 and ω̇1 without κ″.
-//! It divides by λ (free fall) and κ (no thrust), the paper's other two singularities.
+//! The product with q gives λ⁗, hence q⁗ (7.2); the products with b1 and b2 give ω̇2 and ω̇1
+//! without κ″ (7.4). It divides by λ (zero in free fall) and κ (zero without thrust).
 
 use model::{Real, State, Vehicle, Yaw};
 use nalgebra::Vector3;
 
 use crate::law::lift::Lift;
 
-/// The torque τ in body axes, N·m, that with u_ζ = p⁽⁶⁾·e3 gives the payload the sixth derivative `position_6`
-/// (N, m/s⁶) and the UAV the yaw acceleration `yaw_2`, rad/s², against `disturbing_torque`.
+/// The torque τ in body axes, N·m, that with u_ζ = p⁽⁶⁾·e3 gives the payload the sixth
+/// derivative `position_6` (N, m/s⁶) and the UAV the yaw acceleration `yaw_2`, rad/s², against
+/// `disturbing_torque`.
 #[inline(always)]
 pub fn lower<T: Real>(
     vehicle: &Vehicle<T>,

@@ -1,5 +1,5 @@
-//! Curves draped over a surface that is graded along n1: h1 = F(p1, p2) is their outline seen from above, h2 = p3 − H(p1)
-//! their height. Much of (3) is constant there:
+//! Curves draped over a surface that is graded along n1: h1 = F(p1, p2) is their outline seen from
+//! above, h2 = p3 − H(p1) their height. Much of (3) is constant there:
 //!
 //! ```text
 //! ∇h1 = (F1, F2, 0),   ∇h2 = (−H′, 0, 1),   ∇h1 × ∇h2 = (F2, −F1, H′ F2)
@@ -12,8 +12,8 @@ use crate::law::lift::PositionSeries;
 use crate::path::Located;
 use crate::path::curve::{norm_squared, velocity};
 
-/// Locates the payload from h1 and h2, the outline's gradient (F1, F2), the product with H′ (which may be a number or a series),
-/// and H′ now.
+/// Locates the payload from h1 and h2, the outline's gradient (F1, F2), the product with H′ (which
+/// may be a number or a series), and H′ now.
 #[inline]
 pub(super) fn locate<T: Real>(
     surfaces: [Series<T, 7>; 2],

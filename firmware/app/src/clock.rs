@@ -1,4 +1,5 @@
-//! Time since the start in core cycles, by SysTick: unlike the cycle counter of the debug unit, emulators have it too.
+//! Time since the start in core cycles, by SysTick: unlike the cycle counter of the debug unit,
+//! emulators have it too.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -34,7 +35,8 @@ pub fn wrap() -> bool {
     due
 }
 
-/// Nanoseconds since the start. Below the counter's interrupt in priority, it may be a wrap behind for an instant.
+/// Nanoseconds since the start. Below the counter's interrupt in priority, it may be a wrap behind
+/// for an instant.
 pub fn now_ns() -> u64 {
     let wraps = WRAPS.load(Ordering::Relaxed);
     let cycles = u64::from(wraps) * u64::from(WRAP) + u64::from(WRAP - 1 - SYST::get_current());

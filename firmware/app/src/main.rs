@@ -8,8 +8,8 @@
 //! | 1 | `report`: heartbeat, counters, log, status LED | once a second |
 //! | 0 | `idle`: feeds the watchdog while `control` lives | any interrupt |
 //!
-//! What is decided about flight stands in the `autopilot` crate, which the host tests; what is known about a board in its
-//! file under [`board`]. Here they are only connected.
+//! What is decided about flight stands in the `autopilot` crate, which the host tests; what is
+//! known about a board in its file under [`board`]. Here they are only connected.
 #![no_std]
 #![no_main]
 
@@ -239,7 +239,8 @@ mod app {
     }
 }
 
-/// Rotors off, then a reset: by the watchdog, so that it is counted and reported, or where there is none at once.
+/// Rotors off, then a reset: by the watchdog, so that it is counted and reported, or where there is
+/// none at once.
 fn fail() -> ! {
     cortex_m::interrupt::disable();
     board::stop_rotors();

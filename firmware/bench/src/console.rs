@@ -1,4 +1,5 @@
-//! Lines of `key=value` fields to the emulator's standard output, without the formatting machinery and its panics.
+//! Lines of `key=value` fields to the emulator's standard output, without the formatting machinery
+//! and its panics.
 
 use cortex_m_semihosting::hio::{self, HostStream};
 

@@ -1,7 +1,8 @@
-//! Runs every case of [`cases`] on the target, and prints for each what one step costs: instructions, stack, state.
+//! Runs every case of [`cases`] on the target, and prints for each what one step costs:
+//! instructions, stack, state.
 //!
-//! It is also the proof that a step can't panic: the panic handler calls a function that doesn't exist, so an image with
-//! a reachable panic doesn't link.
+//! It is also the proof that a step can't panic: the panic handler calls a function that doesn't
+//! exist, so an image with a reachable panic doesn't link.
 #![no_std]
 #![no_main]
 
@@ -51,7 +52,8 @@ impl Visitor for Bench {
     }
 }
 
-/// The step as the measurement calls it: the root of the call graph whose code and stack are counted.
+/// The step as the measurement calls it: the root of the call graph whose code and stack are
+/// counted.
 // Its callers are this image's own, so its result's layout is as good as any.
 #[allow(improper_ctypes_definitions)]
 #[inline(never)]

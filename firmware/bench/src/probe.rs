@@ -1,8 +1,8 @@
 //! What one call costs: instructions by the SysTick timer, stack by painting.
 //!
-//! Under QEMU's `-icount shift=7` an instruction lasts 2^7 ns of virtual time, 3.2 ticks of the 25 MHz SysTick of the mps2
-//! boards: more than a tick an instruction, so that the difference of two readings, wrong by at most one tick, names
-//! their number exactly.
+//! Under QEMU's `-icount shift=7` an instruction lasts 2^7 ns of virtual time, 3.2 ticks of the 25
+//! MHz SysTick of the mps2 boards: more than a tick an instruction, so that the difference of two
+//! readings, wrong by at most one tick, names their number exactly.
 
 use core::arch::asm;
 use core::mem::MaybeUninit;
@@ -30,8 +30,8 @@ pub struct Probe {
     overhead: u32,
 }
 
-/// A call to be measured: reads and changes `A`, reads `B`, and returns a `C` of more than four words, which the calling convention has it
-/// write where the first register points.
+/// A call to be measured: reads and changes `A`, reads `B`, and returns a `C` of more than four
+/// words, which the calling convention has it write where the first register points.
 pub type Call<A, B, C> = extern "C" fn(&mut A, &B) -> C;
 
 /// Nothing but the return.
@@ -41,8 +41,8 @@ extern "C" fn nothing(_: &mut (), _: &()) -> [u32; 5] {
 }
 
 impl Probe {
-    /// Starts the counter and takes the cost of an empty call, which every measurement then leaves out.
-    /// `None` if the counter doesn't count.
+    /// Starts the counter and takes the cost of an empty call, which every measurement then leaves
+    /// out. `None` if the counter doesn't count.
     pub fn start() -> Option<Self> {
         // SAFETY: the only code of this image that touches a peripheral, and it runs once.
         let mut timer = unsafe { cortex_m::Peripherals::steal() }.SYST;
@@ -51,7 +51,8 @@ impl Probe {
         timer.clear_current();
         timer.enable_counter();
         let (_, empty) = Self { overhead: 0 }.measure(nothing, &mut (), &());
-        // A load, the call and the return; anything else means that the clock is not the one reckoned with.
+        // A load, the call and the return; anything else means that the clock is not the one
+        // reckoned with.
         (empty.instructions == 3).then_some(Self { overhead: empty.instructions })
     }
 
@@ -62,8 +63,9 @@ impl Probe {
         let paint = paint();
         let (start, end, sp): (u32, u32, usize);
         const { assert!(size_of::<C>() > 16) };
-        // SAFETY: a call of an extern "C" function with its result's and its arguments' pointers, all of them live; the clobbers are those of the
-        // calling convention, and what outlives the call is declared an early output, so kept out of them.
+        // SAFETY: a call of an extern "C" function with its result's and its arguments' pointers,
+        // all of them live; the clobbers are those of the calling convention, and what outlives the
+        // call is declared an early output, so kept out of them.
         unsafe {
             asm!(
                 "mov r4, sp",
@@ -99,7 +101,8 @@ fn paint() -> usize {
     unsafe { asm!("mov {}, sp", out(reg) sp, options(nomem, nostack, preserves_flags)) };
     let bottom = sp - 4 * PAINTED;
     for word in 0..PAINTED {
-        // SAFETY: below the stack pointer and far above the statics (4 MiB of RAM) lies nothing; no interrupt is enabled.
+        // SAFETY: below the stack pointer and far above the statics (4 MiB of RAM) lies nothing; no
+        // interrupt is enabled.
         unsafe { ((bottom + 4 * word) as *mut u32).write_volatile(PAINT) };
     }
     bottom

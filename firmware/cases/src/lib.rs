@@ -1,5 +1,5 @@
-//! Control steps on random states: the same source runs on the target, where they are measured, and on the host, whose
-//! digest of all commands the target's must equal.
+//! Control steps on random states: the same source runs on the target, where they are measured, and
+//! on the host, whose digest of all commands the target's must equal.
 #![no_std]
 
 mod digest;
@@ -47,8 +47,8 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("track", Tracking::new());
 }
 
-/// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after engaging, the second with a last
-/// command to predict from. Returns the digest of all commands.
+/// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after
+/// engaging, the second with a last command to predict from. Returns the digest of all commands.
 pub fn exercise<C: Case>(case: &mut C, mut step: impl FnMut(&mut C, &C::State) -> C::Output) -> Digest {
     let mut random = Random::new(20);
     let mut digest = Digest::default();

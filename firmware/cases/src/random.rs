@@ -1,4 +1,5 @@
-//! Random numbers that are the same on every machine: integers, and floats made of them without rounding.
+//! Random numbers that are the same on every machine: integers, and floats made of them without
+//! rounding.
 
 /// Marsaglia's xorshift32 (shifts 13, 17, 5): period 2³² − 1, and enough for drawing states.
 pub struct Random(u32);

@@ -1,5 +1,5 @@
-//! What a vehicle is told to fly: a [path](crate::describe::route) for the path-following law, or a reference in time for the tracking
-//! law.
+//! What a vehicle is told to fly: a [path](crate::describe::route) for the path-following law, or a
+//! reference in time for the tracking law.
 
 use controller::{Circle, Real, Reference};
 use serde::Deserialize;
@@ -49,7 +49,8 @@ pub fn parse_reference<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<
 }
 
 impl ReferenceSpec {
-    /// The reference about time `t_s`. The phase is reduced to one turn in f64 first, as a counter on the target would.
+    /// The reference about time `t_s`. The phase is reduced to one turn in f64 first, as a counter
+    /// on the target would.
     #[must_use]
     pub fn at<T: Real>(&self, t_s: f64) -> Reference<T> {
         let phase = (self.rate * t_s) % TAU;

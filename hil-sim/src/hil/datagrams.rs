@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 use super::Wire;
 
-/// The system keeps some hundred bytes beside each datagram, and an emulator makes a datagram of each byte: so this is room for a
-/// few hundred of them, some answers with telemetry.
+/// The system keeps some hundred bytes beside each datagram, and an emulator makes a datagram of
+/// each byte: so this is room for a few hundred of them, some answers with telemetry.
 const ROOM: usize = 1 << 20;
 
 /// The longest datagram that is read whole: any frame is shorter.
 const LONGEST: usize = 512;
 
-/// So long, ten times what an answer takes, the next datagram is looked for without sleeping: to be woken takes longer than an emulator
-/// does from one byte to the next, and the sender pays for it.
+/// So long, ten times what an answer takes, the next datagram is looked for without sleeping: to be
+/// woken takes longer than an emulator does from one byte to the next, and the sender pays for it.
 const WATCHFUL: Duration = Duration::from_millis(5);
 
 /// Between looks after that.
@@ -40,7 +40,8 @@ impl Datagrams {
     /// Over a socket that is connected.
     pub fn over(socket: UdpSocket) -> io::Result<Self> {
         socket.set_nonblocking(true)?;
-        // The system may give less, or refuse: a datagram without room is lost, and asked for again.
+        // The system may give less, or refuse: a datagram without room is lost, and asked for
+        // again.
         let _ = socket2::SockRef::from(&socket).set_recv_buffer_size(ROOM);
         Ok(Self { socket, patience: WATCHFUL })
     }

@@ -25,11 +25,12 @@ pub struct Emulator {
 }
 
 impl Emulator {
-    /// Starts `image` on `machine`. With `count`, virtual time is a count of instructions, so that the target's cycle counts are
-    /// instructions and repeatable.
+    /// Starts `image` on `machine`. With `count`, virtual time is a count of instructions, so that
+    /// the target's cycle counts are instructions and repeatable.
     ///
     /// # Errors
-    /// [`HilError::Image`], [`HilError::NoEmulator`], or [`HilError::Connect`] if there is no free port.
+    /// [`HilError::Image`], [`HilError::NoEmulator`], or [`HilError::Connect`] if there is no free
+    /// port.
     pub fn start(machine: &str, image: &Path, count: bool) -> Result<Self, HilError> {
         std::fs::File::open(image)
             .map_err(|source| HilError::Image { image: image.display().to_string(), source })?;
@@ -41,8 +42,9 @@ impl Emulator {
         command
             .args(["-machine", machine, "-display", "none", "-monitor", "none", "-kernel"])
             .arg(image)
-            // Datagrams, because QEMU then reads a whole frame at once, and from other lines a byte for each turn of its main loop;
-            // multiplexed for the sake of that buffer: the port takes the next byte when it has been read, and not a turn later.
+            // Datagrams, because QEMU then reads a whole frame at once, and from other lines a byte
+            // for each turn of its main loop; multiplexed for the sake of that buffer: the port
+            // takes the next byte when it has been read, and not a turn later.
             .arg("-chardev")
             .arg(format!("udp,id=hil,host=127.0.0.1,port={port},localaddr=127.0.0.1,localport=0,mux=on"))
             // No byte has this value, so none is taken for the multiplexer's escape.
@@ -74,7 +76,8 @@ impl Emulator {
         Ok(Self { child, socket, endpoint, stderr, shift, machine: machine.to_owned() })
     }
 
-    /// 2⁶ ns an instruction: more than a tick of either machine's cycle counter, so that none is lost to rounding.
+    /// 2⁶ ns an instruction: more than a tick of either machine's cycle counter, so that none is
+    /// lost to rounding.
     const SHIFT: u32 = 6;
 
     /// Where its serial port is heard.
@@ -83,7 +86,8 @@ impl Emulator {
         self.endpoint.clone()
     }
 
-    /// The line to its serial port, once the target has spoken: where from, only its first word tells.
+    /// The line to its serial port, once the target has spoken: where from, only its first word
+    /// tells.
     ///
     /// # Errors
     /// [`HilError::EmulatorDied`], or [`HilError::Silent`] after `patience`.
@@ -113,7 +117,8 @@ impl Emulator {
     /// Counts of the target's cycle counter for one instruction, where instructions are counted.
     #[must_use]
     pub fn counts_per_instruction(&self) -> Option<f64> {
-        // QEMU's own core clocks of these machines; what the target's program believes does not move them.
+        // QEMU's own core clocks of these machines; what the target's program believes does not
+        // move them.
         let clock_hz = match self.machine.as_str() {
             "netduinoplus2" | "olimex-stm32-h405" => 168e6,
             "mps2-an385" | "mps2-an386" | "mps2-an500" | "mps2-an511" => 25e6,
@@ -156,8 +161,8 @@ fn free_port() -> std::io::Result<(UdpSocket, u16)> {
     Ok((socket, port))
 }
 
-/// QEMU, its threads kept on one core and from interrupting each other, where the system has the tools: they wake each other for each
-/// byte, and on two cores take longer to wake than to work.
+/// QEMU, its threads kept on one core and from interrupting each other, where the system has the
+/// tools: they wake each other for each byte, and on two cores take longer to wake than to work.
 fn program() -> Command {
     static STARTED: AtomicUsize = AtomicUsize::new(0);
     let cores = cores();
@@ -170,7 +175,8 @@ fn program() -> Command {
         command.args(["-c", &core.to_string(), "chrt", "-b", "0", PROGRAM]);
         command
     };
-    // It fails where a tool is missing or may not, and where there is no QEMU: that is better said without them.
+    // It fails where a tool is missing or may not, and where there is no QEMU: that is better said
+    // without them.
     let works = on_one_core().arg("--version").output().is_ok_and(|output| output.status.success());
     if works { on_one_core() } else { Command::new(PROGRAM) }
 }

@@ -7,7 +7,7 @@ use super::Endpoint;
 /// Why a flight with a target could not begin or go on.
 #[derive(Debug, thiserror::Error)]
 pub enum HilError {
-    /// The endpoint's description is none.
+    /// Not an endpoint.
     #[error("{0:?} is no endpoint: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT")]
     Endpoint(String),
     /// There is no such serial port, or it is not ours to open.

@@ -1,4 +1,5 @@
-//! The line to a target: questions and answers over it, asked again where one is lost, and the line mended where it breaks.
+//! The line to a target: questions and answers over it, asked again where one is lost, and the line
+//! mended where it breaks.
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
@@ -23,7 +24,8 @@ pub struct Line {
 }
 
 impl Line {
-    /// Opens `endpoint`, or the line to the emulator, waiting for its first word as long as the patience lasts.
+    /// Opens `endpoint`, or the line to the emulator, waiting for its first word as long as the
+    /// patience lasts.
     pub fn open(endpoint: Endpoint, mut emulator: Option<Emulator>, options: Options) -> Result<Self, HilError> {
         let wire = open(&endpoint, emulator.as_mut(), options.patience)?;
         Ok(Self { emulator, ..Self::over(endpoint, wire, options) })

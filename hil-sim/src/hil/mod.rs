@@ -1,11 +1,13 @@
-//! Hardware in the loop: the plant here, the controller at the other end of a serial line or a socket.
+//! Hardware in the loop: the plant here, the controller at the other end of a serial line or a
+//! socket.
 //!
-//! [`Endpoint`] says where the target is, [`Emulator`] starts one in QEMU, [`Target`] speaks with it and [answers
-//! states](crate::fly::pilot::Answers) as a law in this program does, so a flight with it is a flight like any other.
+//! [`Endpoint`] says where the target is, [`Emulator`] starts one in QEMU, [`Target`] speaks with
+//! it and [answers states](crate::fly::pilot::Answers) as a law in this program does, so a flight
+//! with it is a flight like any other.
 //!
-//! In lockstep each state frame is one control step, and a frame or its answer may be lost: the same frame is sent again, and the target
-//! answers the same number with the same command. So neither a slow host, nor a noisy line, nor a line that was cut and is back
-//! changes any result.
+//! In lockstep each state frame is one control step, and a frame or its answer may be lost: the
+//! same frame is sent again, and the target answers the same number with the same command. So
+//! neither a slow host, nor a noisy line, nor a line that was cut and is back changes any result.
 
 mod command;
 mod datagrams;

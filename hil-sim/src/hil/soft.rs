@@ -1,4 +1,5 @@
-//! The flight program's logic in this process, at the other end of a line: a target without hardware.
+//! The flight program's logic in this process, at the other end of a line: a target without
+//! hardware.
 
 use std::io::{self, ErrorKind};
 use std::time::Instant;
@@ -8,9 +9,11 @@ use link::{Decoder, Encoder, MavMessage};
 
 use super::Wire;
 
-/// Serves one line until its other end closes it. The same code as in the firmware, but for the interrupts around it.
+/// Serves one line until its other end closes it. The same code as in the firmware, but for the
+/// interrupts around it.
 ///
-/// Lockstep needs no clock; in real time the control period is kept as well as the system lets a thread keep it.
+/// Lockstep needs no clock; in real time the control period is kept as well as the system lets a
+/// thread keep it.
 ///
 /// # Errors
 /// The line's, but for its regular end.

@@ -56,7 +56,8 @@ impl fmt::Display for Endpoint {
 
 /// A two-way line of bytes whose reads end after a while.
 pub trait Wire: Read + Write + Send {
-    /// How long a read waits at most. It then fails with [`io::ErrorKind::WouldBlock`] or [`io::ErrorKind::TimedOut`].
+    /// How long a read waits at most. It then fails with [`io::ErrorKind::WouldBlock`] or
+    /// [`io::ErrorKind::TimedOut`].
     ///
     /// # Errors
     /// The system's.

@@ -113,12 +113,14 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
     Ok(())
 }
 
-/// The payload's ways seen from above, n1 up and n2 to the right, with the curve to be flown in grey.
+/// The payload's ways seen from above, n1 up and n2 to the right, with the curve to be flown in
+/// grey.
 pub fn plan(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
     projection(area, title, curve, tracks, 1, 0)
 }
 
-/// The payload's ways seen from the side, n3 down and to the right whichever of n1 and n2 the curve is longer along.
+/// The payload's ways seen from the side, n3 down and to the right whichever of n1 and n2 the curve
+/// is longer along.
 pub fn elevation(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]) -> Drawn {
     let extent = |axis: usize| {
         let range = range(curve.iter().map(|p| p[axis]), 1.0);

@@ -1,19 +1,22 @@
-//! Turbulence of the Dryden form, MIL-F-8785C (1980), 3.7.2 and 3.7.3.2, at low altitude (below 300 m).
+//! Turbulence of the Dryden form, MIL-F-8785C (1980), 3.7.2 and 3.7.3.2, at low altitude (below 300
+//! m).
 //!
 //! At height h and with the mean wind W at 6 m, in feet as there,
 //!
 //! ```text
-//! σ_w = 0.1 W,   σ_u = σ_v = σ_w/(0.177 + 0.000823 h)^0.4,   L_w = h,   L_u = L_v = h/(0.177 + 0.000823 h)^1.2
+//! σ_w = 0.1 W,   σ_u = σ_v = σ_w/(0.177 + 0.000823 h)^0.4
+//! L_w = h,       L_u = L_v = h/(0.177 + 0.000823 h)^1.2
 //! H_u = σ_u √(2 T_u) 1/(1 + T_u s),   H_{v,w} = σ √T (1 + √3 T s)/(1 + T s)²,   T = L/V
 //! ```
 //!
-//! from white noise of unit intensity; u along the mean wind, w vertical, v across. Air frozen but for its transport passes the vehicle
-//! at V, the mean wind relative to it; V is taken constant, and no less than 1 m/s. Both bodies, some metres apart, meet the same gust:
-//! the scales are tens of metres.
+//! from white noise of unit intensity; u along the mean wind, w vertical, v across. Air frozen but
+//! for its transport passes the vehicle at V, the mean wind relative to it; V is taken constant,
+//! and no less than 1 m/s. Both bodies, some metres apart, meet the same gust: the scales are tens
+//! of metres.
 //!
-//! The filters are stepped by their exact transition, and start from their stationary distribution. H_{v,w} is
-//! √3 x₁ + (1 − √3) x₂ with x₁ = 1/(1 + T s), x₂ = x₁/(1 + T s); with the noise's intensity σ² T, x₁ and x₂ have the covariance
-//! σ² (½, ¼; ¼, ¼).
+//! The filters are stepped by their exact transition, and start from their stationary distribution.
+//! H_{v,w} is √3 x₁ + (1 − √3) x₂ with x₁ = 1/(1 + T s), x₂ = x₁/(1 + T s); with the
+//! noise's intensity σ² T, x₁ and x₂ have the covariance σ² (½, ¼; ¼, ¼).
 
 use controller::Vector3;
 use serde::Deserialize;

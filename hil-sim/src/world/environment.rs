@@ -1,7 +1,8 @@
 //! Forces of the air and of others on payload and UAV, and a payload picked up or dropped.
 //!
-//! Drag on a body with drag area C_d A in air that moves at w: F = ½ ρ C_d A |w − v| (w − v), the quadratic law of bluff
-//! bodies at Reynolds numbers of 10⁴ to 10⁵ (Hoerner, *Fluid-Dynamic Drag*, 1965, ch. 3).
+//! Drag on a body with drag area C_d A in air that moves at w: F = ½ ρ C_d A |w − v| (w − v),
+//! the quadratic law of bluff bodies at Reynolds numbers of 10⁴ to 10⁵ (Hoerner, *Fluid-Dynamic
+//! Drag*, 1965, ch. 3).
 
 use controller::Vector3;
 use serde::Deserialize;
@@ -30,7 +31,8 @@ pub struct Environment {
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Air {
-    /// Mean velocity of the air in N, m/s: **where it goes**, not where it comes from. Each component within ±50.
+    /// Mean velocity of the air in N, m/s: **where it goes**, not where it comes from. Each
+    /// component within ±50.
     pub wind: [f64; 3],
     /// Turbulence about the mean.
     pub gusts: Option<Gusts>,
@@ -43,14 +45,15 @@ pub struct Air {
 }
 
 impl Default for Air {
-    /// Still air of the standard atmosphere at sea level; drag areas of a cube of 10 cm (C_d 1.05, rounded) and of a quadrotor of
-    /// 2.5 kg.
+    /// Still air of the standard atmosphere at sea level; drag areas of a cube of 10 cm (C_d 1.05,
+    /// rounded) and of a quadrotor of 2.5 kg.
     fn default() -> Self {
         Self { wind: [0.0; 3], gusts: None, density: 1.225, payload_drag_area: 0.01, uav_drag_area: 0.05 }
     }
 }
 
-/// Another payload from a time on. It joins or leaves at the payload's velocity: velocities have no step.
+/// Another payload from a time on. It joins or leaves at the payload's velocity: velocities have no
+/// step.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct PayloadStep {
@@ -91,7 +94,8 @@ impl Environment {
     }
 }
 
-/// ½ ρ C_d A |w − v| (w − v), N in N, of a body at `velocity` with `half_density_area` = ½ ρ C_d A, kg/m.
+/// ½ ρ C_d A |w − v| (w − v), N in N, of a body at `velocity` with `half_density_area` = ½ ρ
+/// C_d A, kg/m.
 #[inline]
 #[must_use]
 pub fn drag(half_density_area: f64, air: &Vector3<f64>, velocity: &Vector3<f64>) -> Vector3<f64> {

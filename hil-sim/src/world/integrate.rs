@@ -1,4 +1,5 @@
-//! Numerical integration of ẋ = f(t, x): a fixed-step method for the simulation loop, an adaptive one for references.
+//! Numerical integration of ẋ = f(t, x): a fixed-step method for the simulation loop, an adaptive
+//! one for references.
 
 use ode_solvers::{DVector, Dop853, OutputType, System};
 
@@ -18,7 +19,8 @@ fn advance<const N: usize>(x: &[f64; N], rate: &[f64; N], step: f64) -> [f64; N]
     std::array::from_fn(|i| x[i] + step * rate[i])
 }
 
-/// `substeps` equal steps of [`rk4_step`] from `t` over `period` seconds: one control period, when `f` holds the input.
+/// `substeps` equal steps of [`rk4_step`] from `t` over `period` seconds: one control period, when
+/// `f` holds the input.
 #[inline]
 pub fn rk4<const N: usize>(
     f: impl Fn(f64, &[f64; N]) -> [f64; N],
@@ -58,8 +60,9 @@ impl std::error::Error for Stopped {}
 
 /// A flow with time as its last coordinate.
 ///
-/// `ode_solvers` 0.6.2 evaluates its twelfth stage at the start of the step instead of the end (c12 = 0 in its table),
-/// which spoils every system that depends on time. As a coordinate, time is right in all stages.
+/// `ode_solvers` 0.6.2 evaluates its twelfth stage at the start of the step instead of the end
+/// (c12 = 0 in its table), which spoils every system that depends on time. As a coordinate, time is
+/// right in all stages.
 struct Flow<F, const N: usize>(F);
 
 impl<F, const N: usize> System<f64, DVector<f64>> for Flow<F, N>
@@ -73,7 +76,8 @@ where
     }
 }
 
-/// Integrates from `x` at `span[0]` to `span[1]` by the Dormand-Prince method of order 8(5,3), ending there exactly.
+/// Integrates from `x` at `span[0]` to `span[1]` by the Dormand-Prince method of order 8(5,3),
+/// ending there exactly.
 ///
 /// # Errors
 /// [`Stopped`] if the steps become too small or too many, or the system stiff or not finite.

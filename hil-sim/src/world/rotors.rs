@@ -1,8 +1,10 @@
-//! Four rotors under the thrust and torque of a command: their limits, and one that is weak or lost.
+//! Four rotors under the thrust and torque of a command: their limits, and one that is weak or
+//! lost.
 //!
-//! A rotor at (x, y) in body axes with thrust f along −b3 gives T = f and τ = (−y f, x f, ±k f), k its drag torque per
-//! thrust (the sign that of its spin). Four of them on a square make an invertible map, so a command becomes rotor thrusts, which are
-//! limited one by one as a motor is, and those become thrust and torque again.
+//! A rotor at (x, y) in body axes with thrust f along −b3 gives T = f and τ = (−y f, x f, ±k f),
+//! k its drag torque per thrust (the sign that of its spin). Four of them on a square make an
+//! invertible map, so a command becomes rotor thrusts, which are limited one by one as a motor is,
+//! and those become thrust and torque again.
 
 use controller::{Command, Vector3};
 use serde::Deserialize;
@@ -75,8 +77,8 @@ impl Rotors {
         }
     }
 
-    /// The thrust of each rotor that makes `command`, N. The columns of the map are orthogonal, so its inverse is its transpose,
-    /// scaled.
+    /// The thrust of each rotor that makes `command`, N. The columns of the map are orthogonal, so
+    /// its inverse is its transpose, scaled.
     fn thrusts(&self, command: &Command<f64>) -> [f64; 4] {
         let places = self.places();
         let squares =
@@ -140,7 +142,8 @@ mod tests {
         assert_eq!(ROTORS.limit(&Command { thrust: -5.0, torque: Vector3::zeros() }).thrust, 0.0);
     }
 
-    /// The front right rotor lost from hover: its thrust is missing, and the body rolls right and pitches down.
+    /// The front right rotor lost from hover: its thrust is missing, and the body rolls right and
+    /// pitches down.
     #[test]
     fn a_lost_rotor_takes_its_thrust_and_torques_with_it() {
         let failure = Some(RotorFailure { rotor: 1, at_s: 2.0, effectiveness: 0.0 });

@@ -12,7 +12,8 @@ use crate::world::random::Stream;
 pub struct Timing {
     /// Each period is uniform within this share of the nominal one, either way, 0 to 0.9.
     pub jitter: f64,
-    /// Probability that the controller is not called at a sample, 0 to 0.9; the last command goes on.
+    /// Probability that the controller is not called at a sample, 0 to 0.9; the last command goes
+    /// on.
     pub missed: f64,
 }
 

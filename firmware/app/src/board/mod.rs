@@ -2,7 +2,8 @@
 //!
 //! Another board is another file here, a memory map, a feature and three lines below. Each file has
 //!
-//! - `pac`: interrupts `TIM2` (control), `USART1` (link) and `SPI1` (free, for the program's own use);
+//! - `pac`: interrupts `TIM2` (control), `USART1` (link) and `SPI1` (free, for the program's own
+//!   use);
 //! - the types `Timer`, `RotorOutputs`, `SerialPort`, `StatusLed` and `Dog`, with the traits below;
 //! - `start`, `stop_rotors` (in any state, interrupts off) and `reset`.
 

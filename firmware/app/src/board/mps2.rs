@@ -1,4 +1,5 @@
-//! The emulated boards mps2-an386 (Cortex-M4F) and mps2-an500 (Cortex-M7): the link on UART0, the control timer TIMER0.
+//! The emulated boards mps2-an386 (Cortex-M4F) and mps2-an500 (Cortex-M7): the link on UART0, the
+//! control timer TIMER0.
 //!
 //! There are no rotors, LED or watchdog. Register names are those of Arm's CMSDK (DDI 0479).
 
@@ -9,7 +10,8 @@ use super::{Board, ControlTimer, Led, Rotors, Serial, Watchdog};
 /// Core and peripheral clock, Hz.
 const CLOCK_HZ: u32 = 25_000_000;
 
-/// What a peripheral access crate would bring. The application knows its interrupts by the names that the STM32 give them.
+/// What a peripheral access crate would bring. The application knows its interrupts by the names
+/// that the STM32 give them.
 pub mod pac {
     /// Priority bits the interrupt controller has.
     pub const NVIC_PRIO_BITS: u8 = 3;
@@ -66,7 +68,8 @@ struct Registers(usize);
 
 impl Registers {
     fn read(self, offset: usize) -> u32 {
-        // SAFETY: the addresses below are of this board's peripherals, whose registers may be read at any time.
+        // SAFETY: the addresses below are of this board's peripherals, whose registers may be read
+        // at any time.
         unsafe { ((self.0 + offset) as *const u32).read_volatile() }
     }
 
@@ -149,7 +152,8 @@ impl Serial for SerialPort {
 
     fn wake_when_free(&mut self, wanted: bool) {
         if wanted {
-            // Its own interrupt for this is another vector; the emulator's line is free again at once.
+            // Its own interrupt for this is another vector; the emulator's line is free again at
+            // once.
             super::pend_link();
         }
     }
@@ -195,7 +199,7 @@ pub fn start() -> Board {
     }
 }
 
-/// There are none.
+/// This board has no rotors.
 pub fn stop_rotors() {}
 
 /// Now.

@@ -24,7 +24,8 @@ use super::{Board, ControlTimer, Led, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS
 const CRYSTAL_MHZ: u32 = 8;
 const CORE_MHZ: u32 = 168;
 const BAUD: u32 = 921_600;
-/// How often a ready bit is looked at: some 60 ms on the internal oscillator, where a crystal takes 2.
+/// How often a ready bit is looked at: some 60 ms on the internal oscillator, where a crystal
+/// takes 2.
 const PATIENCE: u32 = 100_000;
 
 /// TIM2, counting microseconds.
@@ -83,8 +84,9 @@ impl Watchdog for Dog {
     }
 }
 
-/// USART1. Its receiver holds one byte, and a control step may last longer than two: so DMA takes the bytes to a ring.
-/// Where there is no DMA, as in emulators, which wait for a byte to be read, they come by interrupt.
+/// USART1. Its receiver holds one byte, and a control step may last longer than two: so DMA takes
+/// the bytes to a ring. Where there is no DMA, as in emulators, which wait for a byte to be read,
+/// they come by interrupt.
 pub struct SerialPort {
     tx: Tx<pac::USART1>,
     rx: Rx<pac::USART1>,
@@ -131,7 +133,8 @@ impl Serial for SerialPort {
 const RING: usize = 1024;
 
 struct Storage(UnsafeCell<[u8; RING]>);
-// SAFETY: `Ring` is made once and is its only reader; DMA writes it, and is read around by its count.
+// SAFETY: `Ring` is made once and is its only reader; DMA writes it, and is read around by its
+// count.
 unsafe impl Sync for Storage {}
 static STORAGE: Storage = Storage(UnsafeCell::new([0; RING]));
 
@@ -147,7 +150,8 @@ impl Ring {
     /// Starts the stream; `None` if it does not say that it runs.
     fn start(dma: pac::DMA2, usart_data: u32) -> Option<Self> {
         let stream = dma.st(Self::STREAM);
-        // SAFETY: from the receiver's data register to memory that only this stream writes, as much of it as there is.
+        // SAFETY: from the receiver's data register to memory that only this stream writes, as much
+        // of it as there is.
         unsafe {
             stream.par().write(|w| w.bits(usart_data));
             stream.m0ar().write(|w| w.bits(STORAGE.0.get() as u32));

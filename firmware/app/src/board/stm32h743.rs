@@ -1,4 +1,5 @@
-//! STM32H743 (Cortex-M7), as on ST's NUCLEO-H743ZI2 (clock 8 MHz from its programmer or a crystal, LED on PB0).
+//! STM32H743 (Cortex-M7), as on ST's NUCLEO-H743ZI2 (clock 8 MHz from its programmer or a crystal,
+//! LED on PB0).
 //!
 //! | function | pins |
 //! |---|---|
@@ -30,7 +31,8 @@ use super::{Board, ControlTimer, Led, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS
 const CRYSTAL_MHZ: u32 = 8;
 const CORE_MHZ: u32 = 400;
 const BAUD: u32 = 921_600;
-/// How often a ready bit is looked at: some 20 ms on the internal oscillator, where a crystal takes 2.
+/// How often a ready bit is looked at: some 20 ms on the internal oscillator, where a crystal
+/// takes 2.
 const PATIENCE: u32 = 100_000;
 
 /// TIM2.
@@ -215,8 +217,8 @@ fn reset_cause(reason: ResetReason) -> (bool, u32) {
     (by_watchdog, resets)
 }
 
-/// The HAL waits for the crystal for ever, so it is tried here before, in bounded time. Without it the PLL multiplies the internal
-/// oscillator to the same rate.
+/// The HAL waits for the crystal for ever, so it is tried here before, in bounded time. Without it
+/// the PLL multiplies the internal oscillator to the same rate.
 fn crystal_starts(rcc: &pac::RCC) -> bool {
     rcc.cr.modify(|_, w| w.hseon().on());
     let starts = (0..PATIENCE).any(|_| rcc.cr.read().hserdy().is_ready());

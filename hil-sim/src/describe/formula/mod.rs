@@ -1,9 +1,10 @@
-//! Formulas in the position's coordinates x, y, z (metres in N, **z down**), for curves that are written in a scenario file.
+//! Formulas in the position's coordinates x, y, z (metres in N, **z down**), for curves that are
+//! written in a scenario file.
 //!
-//! A formula is parsed once into a flat list of operations and evaluated over any number type: plain numbers, the
-//! controller's series and dual numbers in either scalar, and the witness's jets. The grammar (`grammar.pest`) and the
-//! Pratt parser are the `pest` library's; expression crates that evaluate directly either fix the number type or give
-//! errors without a place.
+//! A formula is parsed once into a flat list of operations and evaluated over any number type:
+//! plain numbers, the controller's series and dual numbers in either scalar, and the witness's
+//! jets. The grammar (`grammar.pest`) and the Pratt parser are the `pest` library's; expression
+//! crates that evaluate directly either fix the number type or give errors without a place.
 //!
 //! | | |
 //! |---|---|
@@ -11,7 +12,8 @@
 //! | functions | `sqrt exp ln sin cos tanh`, `atan2(y, x)` |
 //! | names | `x y z`, `pi`, and the constants given beside the formula |
 //!
-//! Every function here is analytic where it is defined. There is no `abs`, since the law needs six derivatives.
+//! Every function here is analytic where it is defined. There is no `abs`, since the law needs six
+//! derivatives.
 
 mod analytic;
 mod parse;
@@ -108,7 +110,8 @@ impl Formula {
     /// Parses `text` with the given named constants.
     ///
     /// # Errors
-    /// The place and the reason, for text that is no formula, an unknown name, or a constant part that has no finite value.
+    /// The place and the reason, for text that is no formula, an unknown name, or a constant part
+    /// that has no finite value.
     pub fn parse(text: &str, constants: &Constants) -> Result<Self, FormulaError> {
         Ok(Self { text: text.to_owned(), code: parse(text, constants)? })
     }

@@ -21,8 +21,8 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The line, from 1, of the field with this path (as in `path.radius` or `poles[0][2]`), or of the innermost of its
-    /// parents that is there.
+    /// The line, from 1, of the field with this path (as in `path.radius` or `poles[0][2]`), or of
+    /// the innermost of its parents that is there.
     #[must_use]
     pub fn line_of(&self, field: &str) -> usize {
         let mut start = 0;

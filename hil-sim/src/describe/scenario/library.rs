@@ -21,7 +21,8 @@ pub const FIGURES: &[(&str, &str)] = scenarios![
     "fig6-no-integral",
 ];
 
-/// Curves of every kind: each from off the path, and again with the law told half and one and a half times the payload's mass.
+/// Curves of every kind: each from off the path, and again with the law told half and one and a
+/// half times the payload's mass.
 pub const CURVES: &[(&str, &str)] = scenarios![
     "tilted-circle",
     "tilted-circle-light",

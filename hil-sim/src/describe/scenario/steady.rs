@@ -1,12 +1,14 @@
-//! The steady motion on a horizontal circle, by differential flatness: the payload's path gives rod, thrust and attitude.
+//! The steady motion on a horizontal circle, by differential flatness: the payload's path gives
+//! rod, thrust and attitude.
 
 use witness::plant::VehicleParameters;
 
-/// The paper's coordinates of the motion on the circle of `radius` about n3 at height `p3`, at the point (0, radius, p3), with
-/// `speed` (m/s) along (−p2, p1, 0)/r and yaw 0.
+/// The paper's coordinates of the motion on the circle of `radius` about n3 at height `p3`, at the
+/// point (0, radius, p3), with `speed` (m/s) along (−p2, p1, 0)/r and yaw 0.
 ///
-/// The payload's specific force v̇ − g e3 is λ q with λ < 0, and the rod's motion q̈ = κ b3 + c λ q gives b3. Seen from the
-/// turning radius both are constant, so that their rates are those of the turn.
+/// The payload's specific force v̇ − g e3 is λ q with λ < 0, and the rod's motion q̈ = κ b3 + c
+/// λ q gives b3. Seen from the turning radius both are constant, so that their rates are those of
+/// the turn.
 pub(super) fn on_circle(vehicle: &VehicleParameters, radius: f64, p3: f64, speed: f64) -> [f64; 16] {
     // At (0, r) the radius is n2 and the motion along −n1; everything turns about n3 at this rate.
     let rate = speed / radius;
@@ -20,10 +22,12 @@ pub(super) fn on_circle(vehicle: &VehicleParameters, radius: f64, p3: f64, speed
     let length = b3_out.hypot(b3_down);
     let (b3_out, b3_down) = (b3_out / length, b3_down / length);
 
-    // q = (sinβ, −sinα cosβ, cosα cosβ) = (0, rod_out, rod_down); b3 = (sinθ cosφ, −sinφ, cosθ cosφ) = (0, b3_out, b3_down).
+    // q = (sinβ, −sinα cosβ, cosα cosβ) = (0, rod_out, rod_down); b3 = (sinθ cosφ, −sinφ,
+    // cosθ cosφ) = (0, b3_out, b3_down).
     let alpha = -rod_out.atan2(rod_down);
     let phi = -b3_out.atan2(b3_down);
-    // Turning brings their n1 components: q̇1 = −rate q2 = cosβ β̇ and ḃ31 = −rate b32 = cosθ cosφ θ̇, at β = θ = 0.
+    // Turning brings their n1 components: q̇1 = −rate q2 = cosβ β̇ and ḃ31 = −rate b32 = cosθ
+    // cosφ θ̇, at β = θ = 0.
     let beta_dot = -rate * rod_out;
     let theta_dot = -rate * b3_out / phi.cos();
     // ω = W⁻¹ (0, θ̇, 0) at ψ = 0.

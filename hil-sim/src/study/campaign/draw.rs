@@ -65,7 +65,8 @@ pub(super) fn set(table: &mut Table, path: &str, value: Value) -> Result<(), Inv
     Ok(())
 }
 
-/// Where and how flights start: about a random point of the path, each quantity uniform up to these.
+/// Where and how flights start: about a random point of the path, each quantity uniform up to
+/// these.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct StartFields {
@@ -81,7 +82,8 @@ pub struct StartFields {
     pub rod_deg: f64,
     /// Body rate, rad/s, 0 to 100: uniform in a ball.
     pub body_rate: f64,
-    /// Rate of the rod's direction, 1/s, 0 to 100: what lies across the rod of a vector uniform in a ball.
+    /// Rate of the rod's direction, 1/s, 0 to 100: what lies across the rod of a vector uniform in
+    /// a ball.
     pub rod_rate: f64,
 }
 

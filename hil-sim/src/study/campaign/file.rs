@@ -3,9 +3,9 @@
 //! ```toml
 //! title = "…"
 //! runs = 10000                       # unless the command line says otherwise
-//! ground_p3 = 0.0                    # where a body that comes to it has crashed; left out: there is no ground
+//! ground_p3 = 0.0                    # where a body has crashed; left out: there is no ground
 //!
-//! [scenario]                         # what every flight has in common: the keys of a scenario file
+//! [scenario]                         # common to all flights: the keys of a scenario file
 //! duration_s = 40.0
 //! …
 //! [start]                            # drawn for every flight, each uniform up to this
@@ -82,7 +82,8 @@ pub struct Campaign {
     scenario: Table,
     start: StartFields,
     draw: BTreeMap<String, Distribution>,
-    /// Paths that have been walked round, which costs more than a flight: most campaigns draw the same few again and again.
+    /// Paths that have been walked round, which costs more than a flight: most campaigns draw the
+    /// same few again and again.
     walked: Mutex<Vec<PathSpec>>,
 }
 
@@ -110,7 +111,8 @@ impl Campaign {
         within("runs", runs, 1..=100_000_000)?;
         let walked = Mutex::default();
         let campaign = Self { title, runs, ground_p3, approach, scenario, start, draw, walked };
-        // Most mistakes show in the first flights; the others end the campaign with their flight's number.
+        // Most mistakes show in the first flights; the others end the campaign with their flight's
+        // number.
         for run in 0..8 {
             campaign.draw(Seed { batch: 0, run })?;
         }

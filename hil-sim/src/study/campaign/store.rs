@@ -1,4 +1,5 @@
-//! The table on disk: rows in the order of their flights, so that it is the same whatever the number of threads or interruptions.
+//! The table on disk: rows in the order of their flights, so that it is the same whatever the
+//! number of threads or interruptions.
 
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions};
@@ -71,7 +72,8 @@ pub struct Store {
 }
 
 impl Store {
-    /// Opens the table of `identity` in `folder`, with the rows that are there already. A torn last line is cut off.
+    /// Opens the table of `identity` in `folder`, with the rows that are there already. A torn last
+    /// line is cut off.
     ///
     /// # Errors
     /// [`StoreError`] if the folder holds another campaign's results, or cannot be read or written.
@@ -127,7 +129,8 @@ fn read_identity(folder: &Path) -> Result<Option<Identity>, StoreError> {
     }
 }
 
-/// The whole rows of a table: the flights of the shard, in order, up to the first that is not there.
+/// The whole rows of a table: the flights of the shard, in order, up to the first that is not
+/// there.
 fn read_rows(path: &Path, identity: &Identity) -> Result<Vec<Row>, StoreError> {
     let text = match std::fs::read(path) {
         Ok(text) => text,
@@ -151,7 +154,8 @@ fn read_rows(path: &Path, identity: &Identity) -> Result<Vec<Row>, StoreError> {
 /// Puts the tables of all shards of one campaign together.
 ///
 /// # Errors
-/// [`StoreError`] if they are not the shards of one campaign, all there and complete, or a file cannot be read.
+/// [`StoreError`] if they are not the shards of one campaign, all there and complete, or a file
+/// cannot be read.
 pub fn merge(folders: &[PathBuf]) -> Result<(Identity, Vec<Row>), StoreError> {
     let wrong = |folder: &Path, message: String| StoreError::Contents { path: folder.to_owned(), message };
     let mut whole: Option<Identity> = None;

@@ -35,11 +35,13 @@ pub struct Summary {
     pub out_of_limits: usize,
     /// Flights that fell back to another mode on the way.
     pub fell_back: usize,
-    /// Percentiles over all flights of the largest d_C in the last quarter, m; a flight that ended early counts 100 m.
+    /// Percentiles over all flights of the largest d_C in the last quarter, m; a flight that ended
+    /// early counts 100 m.
     pub dc_max_m: BTreeMap<&'static str, f64>,
     /// Percentiles over all flights of the root mean square of d_C in the last quarter, m.
     pub dc_rms_m: BTreeMap<&'static str, f64>,
-    /// Percentiles over the flights that reached it of the time from which d_C stayed below 25 cm, s.
+    /// Percentiles over the flights that reached it of the time from which d_C stayed below 25 cm,
+    /// s.
     pub reached_s: BTreeMap<&'static str, f64>,
     /// First faults by how many flights had them.
     pub faults: BTreeMap<String, usize>,

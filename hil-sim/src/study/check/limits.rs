@@ -48,8 +48,8 @@ const TORQUE_ARM: f64 = 0.034;
 const TENSION: f64 = 0.2;
 
 impl Limits {
-    /// The defaults for a vehicle: thrust 0.2 to 2 times hover, rod and tilt 45°, 4 rad/s, per axis a torque of 0.034 m times the
-    /// hover thrust, and a tension of 0.2 of the payload's weight.
+    /// The defaults for a vehicle: thrust 0.2 to 2 times hover, rod and tilt 45°, 4 rad/s, per axis
+    /// a torque of 0.034 m times the hover thrust, and a tension of 0.2 of the payload's weight.
     #[must_use]
     pub fn of(vehicle: &Vehicle<f64>) -> Self {
         let hover = vehicle.hover_thrust();
@@ -63,8 +63,9 @@ impl Limits {
         }
     }
 
-    /// The limits in `value`, the field `at`: `min_thrust`, `max_thrust` (N), `rod_angle_deg`, `tilt_deg`, `body_rate` (rad/s),
-    /// `torque` (N·m), `tension`; what is left out is as in [`of`](Self::of).
+    /// The limits in `value`, the field `at`: `min_thrust`, `max_thrust` (N), `rod_angle_deg`,
+    /// `tilt_deg`, `body_rate` (rad/s), `torque` (N·m), `tension`; what is left out is as in
+    /// [`of`](Self::of).
     ///
     /// # Errors
     /// [`Invalid`] for an unknown field or one out of range.

@@ -1,5 +1,5 @@
-//! Speed and yaw along a lap: do they, or their slopes, jump? A formula's functions are analytic where they are defined, but
-//! `atan2` has a branch, and `sqrt(x^2)` a kink.
+//! Speed and yaw along a lap: do they, or their slopes, jump? A formula's functions are analytic
+//! where they are defined, but `atan2` has a branch, and `sqrt(x^2)` a kink.
 
 use super::jumps::{Point, jump};
 use super::lap::Lap;
@@ -18,13 +18,15 @@ pub fn continuous<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<(), 
     let most = |quantity: fn(&Profile) -> f64, least: f64| {
         points.iter().map(|(_, profile)| quantity(profile).abs()).fold(least, f64::max)
     };
-    // All of the speed, or a radian, within a radian of a circle of this length; or more where there is more.
+    // All of the speed, or a radian, within a radian of a circle of this length; or more where
+    // there is more.
     let natural = TAU / lap.length();
     let speed = most(|profile| profile.speed, f64::MIN_POSITIVE);
     let speed_slope = most(|profile| profile.speed_slope, speed * natural);
     let yaw_slope = most(|profile| profile.yaw_slope, natural);
 
-    // Values first, since where they jump their slopes say nothing. A yaw may change by whole turns, which the law takes for none.
+    // Values first, since where they jump their slopes say nothing. A yaw may change by whole
+    // turns, which the law takes for none.
     let errors = |(from, before): &Point<Profile>, (to, after): &Point<Profile>| {
         let way = to.arc - from.arc;
         [

@@ -1,4 +1,5 @@
-//! The scenario family of the comparison: what is wrong with the world, one case at a time and all at once.
+//! The scenario family of the comparison: what is wrong with the world, one case at a time and all
+//! at once.
 
 use controller::State;
 
@@ -120,8 +121,9 @@ pub(super) fn all(scenario: &mut Scenario, random: &mut Stream) {
     hardware(scenario);
 }
 
-/// A random start about the point (0, r, p3) of the circle: payload within ±1.15 m and ±0.5 m/s an axis, rod within ±0.2 rad (α, β),
-/// roll and pitch within ±0.1 rad, yaw ±0.2 rad, body and rod at rest.
+/// A random start about the point (0, r, p3) of the circle: payload within ±1.15 m and ±0.5 m/s an
+/// axis, rod within ±0.2 rad (α, β), roll and pitch within ±0.1 rad, yaw ±0.2 rad, body and rod
+/// at rest.
 #[must_use]
 pub fn start(radius: f64, p3: f64, random: &mut Stream) -> State<f64> {
     let position = random.cube(1.15);

@@ -47,8 +47,8 @@ impl Comparison {
 /// Medians closer than this are alike, m.
 const ALIKE_M: f64 = 1e-3;
 
-/// Where the observer does worse than another law, a line each: fewer good flights, or a median d_C larger by more than a
-/// millimetre.
+/// Where the observer does worse than another law, a line each: fewer good flights, or a median d_C
+/// larger by more than a millimetre.
 #[must_use]
 pub fn worse(comparison: &Comparison) -> String {
     let mut text = String::new();

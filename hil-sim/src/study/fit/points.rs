@@ -36,12 +36,13 @@ impl fmt::Display for PointsError {
     }
 }
 
-/// Reads x, y, z in N (m, z down), one point a line in the order flown; the loop closes from the last to the first. A first
-/// line of names and lines that begin with # are passed over. A last point equal to the first is left out.
+/// Reads x, y, z in N (m, z down), one point a line in the order flown; the loop closes from the
+/// last to the first. A first line of names and lines that begin with # are passed over. A last
+/// point equal to the first is left out.
 ///
 /// # Errors
-/// [`PointsError`] for anything that is no finite number, a missing or surplus column, a point that repeats the one before
-/// it, and fewer than four points.
+/// [`PointsError`] for anything that is no finite number, a missing or surplus column, a point that
+/// repeats the one before it, and fewer than four points.
 pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
     let error = |line, column, message: String| PointsError { file: file.to_owned(), line, column, message };
     let mut reader = csv::ReaderBuilder::new()

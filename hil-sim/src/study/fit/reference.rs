@@ -8,8 +8,8 @@ pub const LEAST_ANGLE: f64 = 15.0 * PI / 180.0;
 /// Directions tried first: 3° apart.
 const DIRECTIONS: usize = 2500;
 
-/// The direction whose least angle to all `tangents` (unit vectors, either sign) is largest, with that angle (rad) and the
-/// index of the tangent it is measured to.
+/// The direction whose least angle to all `tangents` (unit vectors, either sign) is largest, with
+/// that angle (rad) and the index of the tangent it is measured to.
 pub fn farthest(tangents: &[Vector3<f64>]) -> (Vector3<f64>, f64, usize) {
     let cosine = |direction: &Vector3<f64>| {
         let mut worst = (0.0_f64, 0);

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use super::{Row, Tuning, Value, best};
 use crate::study::compare::length;
 
-/// One sentence on what the proposal gives up and for what, against the most accurate and the calmest setting with as many good flights;
-/// and one more where it lies at an edge of the grid.
+/// One sentence on what the proposal gives up and for what, against the most accurate and the
+/// calmest setting with as many good flights; and one more where it lies at an edge of the grid.
 #[must_use]
 pub fn trade(tuning: &Tuning) -> String {
     let rows = &tuning.rows;
