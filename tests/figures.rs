@@ -3,9 +3,9 @@
 use hil_sim::describe::reference::{Reference, Variant};
 use hil_sim::describe::route::SpeedSpec;
 use hil_sim::describe::scenario::{FIGURES, Law, Scenario, builtin};
+use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::metrics::Results;
-use hil_sim::fly::run::{Arithmetic, End, Options, fly, fly_simply};
-use std::sync::atomic::AtomicBool;
+use hil_sim::fly::run::{Arithmetic, fly, fly_simply};
 
 /// A flight's sampling moves an event by some periods, and the reference is printed to milliseconds.
 const TIME_S: f64 = 0.010;
@@ -136,10 +136,11 @@ fn integral_action_nulls_the_steady_errors() {
 
 #[test]
 fn the_f32_controller_stays_near_its_f64_twin() {
-    let stop = AtomicBool::new(false);
-    let options = Options { arithmetic: Arithmetic::F32, twin: true, stop: &stop, progress: &|_| {} };
     for (name, _) in FIGURES {
-        let deviation = fly(&scenario(name), options).unwrap().deviation.expect("a twin flew along");
+        let deviation = fly(&scenario(name), Arithmetic::F32, true, Control::alone())
+            .unwrap()
+            .deviation
+            .expect("a twin flew along");
         // Some 2⁻²⁴ times the condition of the law; with integral action, the sum of small terms in a large one adds its own.
         let bound = if matches!(*name, "fig5" | "fig6") { 2e-4 } else { 1e-5 };
         assert!(deviation.max() <= bound, "{name}: {deviation:?}");
@@ -148,7 +149,6 @@ fn the_f32_controller_stays_near_its_f64_twin() {
 
 #[test]
 fn the_f64_controller_is_its_own_twin() {
-    let stop = AtomicBool::new(false);
-    let options = Options { arithmetic: Arithmetic::F64, twin: true, stop: &stop, progress: &|_| {} };
-    assert_eq!(fly(&scenario("fig3a"), options).unwrap().deviation.map(|d| d.max()), Some(0.0));
+    let flight = fly(&scenario("fig3a"), Arithmetic::F64, true, Control::alone()).unwrap();
+    assert_eq!(flight.deviation.map(|d| d.max()), Some(0.0));
 }

@@ -4,13 +4,13 @@
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use controller::{ActuatorLimits, ObserverParams, State};
+use controller::{ActuatorLimits, Command, ObserverParams, State};
 use hil_sim::describe::scenario::{FIGURES, Scenario, builtin};
+use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::pilot::{Answers, Decision, Pilot};
-use hil_sim::fly::run::{self, Arithmetic, End, Flight};
+use hil_sim::fly::run::{self, Flight};
 use hil_sim::hil::{Emulator, Endpoint, HilError, Options, Pace, Target, Wire, serve};
 
 /// Remembers every number of every command, by its bits.
@@ -30,13 +30,17 @@ impl<A: Answers> Answers for Recorded<A> {
         self.inner.start(state, zeta);
     }
 
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        self.inner.take_over(state, applied);
+    }
+
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
         let decision = self.inner.step(state, t_s)?;
-        let Decision { input, zeta, .. } = decision;
-        let [t1, t2, t3] = input.torque;
+        let Decision { command, zeta, .. } = decision;
+        let [t1, t2, t3] = command.torque.into();
         let [z1, z2, z3, z4] = zeta;
         // The law computes in f32, so nothing is lost.
-        self.commands.push([input.thrust, t1, t2, t3, z1, z2, z3, z4].map(|number| (number as f32).to_bits()));
+        self.commands.push([command.thrust, t1, t2, t3, z1, z2, z3, z4].map(|number| (number as f32).to_bits()));
         Some(decision)
     }
 }
@@ -64,9 +68,7 @@ fn flights(duration_s: f64) -> Vec<Scenario> {
 }
 
 fn fly<A: Answers>(scenario: &Scenario, controller: &mut A) -> Flight {
-    let stop = AtomicBool::new(false);
-    let options = run::Options { arithmetic: Arithmetic::F32, twin: false, stop: &stop, progress: &|_| {} };
-    run::fly_on(scenario, controller, options).expect("a built-in scenario can be set up")
+    run::fly_on(scenario, controller, false, Control::alone()).expect("a built-in scenario can be set up")
 }
 
 fn fly_here(scenario: &Scenario) -> Vec<[u32; 8]> {

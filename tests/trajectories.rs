@@ -1,6 +1,6 @@
 //! Closed loops in continuous time: the f64 law on the plant, integrated adaptively, against the reference trajectories.
 
-use controller::Disturbance;
+use controller::{Command, Disturbance};
 use controller::{
     Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams,
     law::{follow, track},
@@ -115,8 +115,13 @@ fn follows(name: &str, path: &(impl Path<f64> + Clone)) {
         let xi = &solution.xi;
         // The reference has no ξ̃ where it has no integral action.
         let integrand = if reference.integral_gains.is_some() { [xi.h1[0], xi.h2[0], xi.h3[0]] } else { [0.0; 3] };
-        Answer { input: hil_sim::fly::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand }
+        Answer { input: input(&solution.command), u_zeta: solution.u_zeta, integrand }
     });
+}
+
+/// A command as the witness' plant takes it.
+fn input(command: &Command<f64>) -> Input {
+    Input { thrust: command.thrust, torque: command.torque.into() }
 }
 
 /// The path of this trajectory, described as a user would: the file has the fields in this order.
@@ -157,6 +162,6 @@ fn trajectory_tracking_of_figure_3() {
     compare(name, reference, |t, state, zeta, _| {
         let wanted = Reference::circle(5.0, -10.0, 1.0, t);
         let solution = track::law(&vehicle, &gains, &wanted, state, zeta, &Disturbance::none());
-        Answer { input: hil_sim::fly::pilot::input(&solution.command), u_zeta: solution.u_zeta, integrand: [0.0; 3] }
+        Answer { input: input(&solution.command), u_zeta: solution.u_zeta, integrand: [0.0; 3] }
     });
 }

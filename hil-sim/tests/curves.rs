@@ -1,7 +1,8 @@
 //! Proof by flight: every curve of the scenarios, from off the path, on it, and with a wrong payload mass.
 
 use hil_sim::describe::scenario::{CURVES, Law, Scenario, builtin};
-use hil_sim::fly::run::{Arithmetic, End, Flight, fly_simply};
+use hil_sim::fly::flight::End;
+use hil_sim::fly::run::{Arithmetic, Flight, fly_simply};
 use rayon::prelude::*;
 
 fn scenario(name: &str) -> Scenario {

@@ -1,7 +1,8 @@
 //! What the README shows is what there is.
 
 use hil_sim::describe::scenario::{Law, Scenario};
-use hil_sim::fly::run::{Arithmetic, End, fly_simply};
+use hil_sim::fly::flight::End;
+use hil_sim::fly::run::{Arithmetic, fly_simply};
 
 const README: &str = include_str!("../../README.md");
 

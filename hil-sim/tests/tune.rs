@@ -1,8 +1,8 @@
 //! Tuning: the same for any number of threads, what it proposes is what it flew, and what it says follows from its numbers.
 
 use hil_sim::describe::scenario::{Law, Scenario};
+use hil_sim::fly::flight::Control;
 use hil_sim::study::tune::{self, Tuning, trade, tune};
-use std::sync::atomic::AtomicBool;
 
 const SCALES: [f64; 2] = [0.8, 1.2];
 const BANDWIDTHS: [f64; 2] = [2.0, 8.0];
@@ -17,7 +17,7 @@ fn task() -> toml::Table {
 fn tuned(threads: usize) -> Tuning {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let grid = (&SCALES[..], &BANDWIDTHS[..]);
-    let tuning = pool.install(|| tune(&task(), grid, (3, 7), &AtomicBool::new(false), &|_| {}));
+    let tuning = pool.install(|| tune(&task(), grid, (3, 7), Control::alone()));
     tuning.expect("a scenario that can be tuned").expect("not interrupted")
 }
 
@@ -68,12 +68,12 @@ fn what_cannot_be_tuned_is_refused_with_its_field() {
     let refused = |change: &str| {
         let mut table = task();
         table.extend(toml::from_str::<toml::Table>(change).expect("TOML"));
-        tune(&table, (&SCALES[..], &BANDWIDTHS[..]), (1, 1), &AtomicBool::new(false), &|_| {})
+        tune(&table, (&SCALES[..], &BANDWIDTHS[..]), (1, 1), Control::alone())
             .expect_err("it was accepted")
             .to_string()
     };
     assert!(refused("duration_s = -1.0").starts_with("duration_s: "));
     assert!(refused("[controller]\nlaw = \"fly\"").starts_with("controller.law: "));
-    let unstable = tune(&task(), (&[-1.0], &[4.0]), (1, 1), &AtomicBool::new(false), &|_| {});
+    let unstable = tune(&task(), (&[-1.0], &[4.0]), (1, 1), Control::alone());
     assert!(unstable.expect_err("it was accepted").to_string().starts_with("controller.poles"));
 }

@@ -1,6 +1,7 @@
 //! `campaign` and `merge`: thousands of drawn flights.
 
 use clap::Args;
+use hil_sim::fly::flight::Control;
 use hil_sim::study::campaign::{self, Campaign, Identity, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
@@ -120,7 +121,9 @@ fn report(common: &Common, campaign: &Campaign, seed: u64, rows: &[Row]) -> Resu
 }
 
 fn replay(common: &Common, campaign: &Campaign, seed: Seed) -> Ended {
-    let (row, log) = campaign::replay(campaign, seed)?;
+    let stop = many::interrupt()?;
+    let control = Control { stop: &stop, progress: &|_| {} };
+    let Some((row, log)) = campaign::replay(campaign, seed, control)? else { return Ok(many::nothing_reported()) };
     let folder: &Path = common.folder();
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let path = folder.join(format!("replay-{}.csv", seed.run));

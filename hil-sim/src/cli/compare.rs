@@ -1,6 +1,7 @@
 //! `compare`: four laws against the world.
 
 use clap::Args;
+use hil_sim::fly::flight::Control;
 use hil_sim::study::compare;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -45,8 +46,15 @@ pub fn compare(common: &Common, arguments: &CompareArguments) -> Ended {
 
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, compare::work_s(runs, &wanted));
-    let compared =
-        pool.install(|| compare::compare(runs, many.seed, *bandwidth, &wanted, &stop, &many::progress(&bar)))?;
+    let compared = pool.install(|| {
+        compare::compare(
+            runs,
+            many.seed,
+            *bandwidth,
+            &wanted,
+            Control { stop: &stop, progress: &many::progress(&bar) },
+        )
+    })?;
     bar.finish_and_clear();
     let Some(comparison) = compared else {
         return Ok(many::nothing_reported());

@@ -3,7 +3,8 @@
 use hil_sim::describe::reference::Reference;
 use hil_sim::describe::scenario::{self, Scenario};
 use hil_sim::fly::batch::{self, Outcome};
-use hil_sim::fly::run::{Arithmetic, End};
+use hil_sim::fly::flight::Control;
+use hil_sim::fly::run::Arithmetic;
 use hil_sim::report;
 use std::error::Error;
 use std::io::{self, Write};
@@ -50,14 +51,15 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) ->
 
     super::check::warn(&scenarios);
     let planned = scenarios.len();
-    let bar = many::progress_bar(common.quiet, batch::work_s(&scenarios));
-    let outcomes = batch::fly_all(scenarios, arithmetic, &stop, &many::progress(&bar))?;
+    let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
+    let control = Control { stop: &stop, progress: &many::progress(&bar) };
+    let outcomes = batch::fly_all(scenarios, arithmetic, control)?;
     bar.finish_and_clear();
 
     let reference = Reference::builtin();
     let page = report::write(common.folder(), &outcomes, &reference)?;
     if !common.quiet {
-        let slowest = outcomes.iter().map(|outcome| outcome.times_real_time).fold(f64::INFINITY, f64::min);
+        let slowest = outcomes.iter().map(|outcome| outcome.flight.times_real_time).fold(f64::INFINITY, f64::min);
         let mut out = io::stdout().lock();
         writeln!(out, "{}", report::table(&outcomes, &reference))?;
         if slowest.is_finite() {
@@ -72,8 +74,8 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) ->
 pub fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for outcome in outcomes {
-        if let End::NotFinite(at_s) = outcome.flight.end {
-            eprintln!("hil-sim: {}: the flight was lost at {at_s} s", outcome.scenario.name);
+        if let Some(failure) = outcome.flight.end.failure() {
+            eprintln!("hil-sim: {}: {failure}", outcome.scenario.name);
             code = ExitCode::FAILURE;
         }
     }

@@ -2,6 +2,7 @@
 
 use hil_sim::describe::reference::Reference;
 use hil_sim::describe::scenario::FIGURES;
+use hil_sim::fly::flight::Control;
 use hil_sim::hil::{self, Arguments, Flown};
 use hil_sim::report;
 use std::fs;
@@ -27,7 +28,7 @@ pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
 
     let planned = scenarios.len();
     let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
-    let flown = hil::fly_all(arguments, scenarios, &stop, &many::progress(&bar))?;
+    let flown = hil::fly_all(arguments, scenarios, Control { stop: &stop, progress: &many::progress(&bar) })?;
     bar.finish_and_clear();
     let Flown { outcomes, links, failure } = flown;
 

@@ -1,6 +1,7 @@
 //! `policies`: path following against trajectory tracking.
 
 use clap::Args;
+use hil_sim::fly::flight::Control;
 use hil_sim::study::compare;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -29,7 +30,8 @@ pub fn policies(common: &Common, arguments: &PolicyArguments) -> Ended {
     let stop = many::interrupt()?;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, compare::policies_work_s(runs));
-    let compared = pool.install(|| compare::policies(runs, many.seed, &stop, &many::progress(&bar)))?;
+    let compared = pool
+        .install(|| compare::policies(runs, many.seed, Control { stop: &stop, progress: &many::progress(&bar) }))?;
     bar.finish_and_clear();
     let Some(policies) = compared else {
         return Ok(many::nothing_reported());

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use hil_sim::describe::scenario::{self, Scenario};
+use hil_sim::fly::flight::Control;
 use hil_sim::study::tune;
 use std::fs;
 use std::io::{self, Write};
@@ -62,8 +63,14 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
     let runs = *runs as usize;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, (scales.len() * bandwidths.len() * runs) as f64 * duration_s);
-    let tuned =
-        pool.install(|| tune::tune(&table, (scales, bandwidths), (runs, many.seed), &stop, &many::progress(&bar)));
+    let tuned = pool.install(|| {
+        tune::tune(
+            &table,
+            (scales, bandwidths),
+            (runs, many.seed),
+            Control { stop: &stop, progress: &many::progress(&bar) },
+        )
+    });
     bar.finish_and_clear();
     let Some(tuning) = tuned.map_err(|error| format!("{name}: {error}"))? else {
         return Ok(many::nothing_reported());

@@ -94,8 +94,8 @@ impl Deviations {
 
     /// Adds one sample: the pilot's answer and its twin's; ξ where both are known.
     pub fn push(&mut self, pilot: &Decision, twin: &Decision) {
-        self.thrust.push(&[pilot.input.thrust], &[twin.input.thrust], &[1.0]);
-        self.torque.push(&pilot.input.torque, &twin.input.torque, &[1.0; 3]);
+        self.thrust.push(&[pilot.command.thrust], &[twin.command.thrust], &[1.0]);
+        self.torque.push(&pilot.command.torque.into(), &twin.command.torque.into(), &[1.0; 3]);
         self.zeta.push(&pilot.zeta, &twin.zeta, &self.zeta_weights);
         if let (Some(pilot), Some(twin)) = (&pilot.telemetry, &twin.telemetry) {
             self.xi.push(&pilot.xi, &twin.xi, &self.xi_weights);

@@ -1,178 +1,199 @@
-//! One flight of many: a controller in f32 engaged from hover thrust in a [world](crate::world), judged by its distance from
-//! the path. Comparisons and campaigns fly with this; it keeps no log, a watcher sees every period.
+//! The flight loop: a pilot at its rate, the [world](crate::world) between samples, and a watcher that sees every period.
 
-use controller::{Command, Disturbance, Fault, Margins, Mode, State, Vector3};
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use controller::{Command, State, Vector3};
+
+use super::pilot::{Answers, Decision};
 use crate::describe::scenario::Scenario;
-use crate::fly::pilot::{Decision, Pilot};
 use crate::world::{Seed, World};
 
-/// A flight this far from its path is lost and ends, m.
+/// A flight this far from its path is lost and ends, m; one that starts further off, at twice its distance then.
 pub const LOST_M: f64 = 100.0;
 
-/// d_C below which a flight is good, m.
-pub const GOOD_M: f64 = 0.25;
-
-/// Share of the flight, at its end, in which d_C is judged.
-pub const JUDGED: f64 = 0.25;
-
-/// d_C is taken about this often, s: a nearest point can cost more than a step of the law.
-const DISTANCE_PERIOD_S: f64 = 0.01;
-
-/// What flies the vehicle: a law alone, or a supervised one.
-pub trait Steers {
-    /// Takes over from whatever applied `applied` until now.
-    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>);
-
-    /// The command for the coming hold, from the state read now.
-    fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering;
+/// How a pilot begins, and begins again after an obstacle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entry {
+    /// From the ζ that the scenario states, and from ζ = 0 after an obstacle, as the paper has it.
+    Stated,
+    /// From a hover, without a bump in thrust.
+    Hover,
 }
 
-/// An answer of what flies the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Steering {
-    /// For the coming hold.
-    pub command: Command<f64>,
-    /// The law's distances from its singularities, where the law was asked.
-    pub margins: Option<Margins<f64>>,
-    /// What the vehicle is doing; [`Mode::Follow`] of a law alone.
-    pub mode: Mode,
-    /// Why it is not doing what was asked.
-    pub fault: Option<Fault>,
-    /// What has been found of disturbances.
-    pub disturbance: Disturbance<f64>,
+/// How a flight is interrupted, and whom it tells how far it is.
+#[derive(Clone, Copy)]
+pub struct Control<'a> {
+    /// Ends the flight early once true.
+    pub stop: &'a AtomicBool,
+    /// Called now and then with the seconds flown since the last call; in all with the whole duration.
+    pub progress: &'a (dyn Fn(f64) + Sync),
 }
 
-impl Steers for Pilot<f32> {
-    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        Self::take_over(self, state, applied);
+impl Control<'static> {
+    /// Nobody interrupts, nobody is told.
+    #[must_use]
+    pub fn alone() -> Self {
+        static NEVER: AtomicBool = AtomicBool::new(false);
+        Self { stop: &NEVER, progress: &|_| {} }
     }
+}
 
-    #[inline]
-    fn steer(&mut self, state: &State<f64>, t_s: f64) -> Steering {
-        let Decision { input, telemetry, .. } = self.step(state, t_s);
-        Steering {
-            command: Command { thrust: input.thrust, torque: Vector3::from(input.torque) },
-            margins: telemetry.map(|telemetry| telemetry.margins),
-            mode: Mode::Follow,
-            fault: None,
-            disturbance: self.disturbance(),
-        }
-    }
+/// How a scenario is flown.
+#[derive(Clone, Copy)]
+pub struct Plan<'a> {
+    /// The state at the start.
+    pub start: State<f64>,
+    /// Of everything random.
+    pub seed: Seed,
+    /// How the pilot begins.
+    pub entry: Entry,
+    /// Where a body that comes to it ends the flight, m; negative is above the origin.
+    pub ground_p3: Option<f64>,
+    /// Control periods from one d_C to the next: a nearest point can cost more than a step of the law.
+    pub distance_every: u64,
+    /// Who watches over it.
+    pub control: Control<'a>,
 }
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ending {
+pub enum End {
     /// At its duration.
     Complete,
+    /// At a user's wish.
+    Interrupted,
     /// On the ground, at this time, s.
     Crashed(f64),
     /// [`LOST_M`] from its path, at this time, s.
     Lost(f64),
-    /// With a state or command that is not finite, at this time, s.
+    /// State or command stopped being finite at this time, s.
     NotFinite(f64),
+    /// The controller stopped answering at this time, s.
+    Unanswered(f64),
 }
 
-/// What a watcher sees at every period.
+impl End {
+    /// In a few words, of a flight that did not reach its duration.
+    #[must_use]
+    pub fn failure(self) -> Option<String> {
+        match self {
+            Self::Complete => None,
+            Self::Interrupted => Some("interrupted".to_owned()),
+            Self::Crashed(at_s) => Some(format!("on the ground at {at_s:.3} s")),
+            Self::Lost(at_s) | Self::NotFinite(at_s) => Some(format!("lost at {at_s:.3} s")),
+            Self::Unanswered(at_s) => Some(format!("unanswered from {at_s:.3} s")),
+        }
+    }
+}
+
+/// What a watcher sees at every control period, and once more at the end.
 pub struct Moment<'a> {
-    /// s.
+    /// Control periods since the start.
+    pub step: u64,
+    /// The world's time, s: with a clock that jitters, not a whole number of periods.
     pub t_s: f64,
     /// The state as it is, not as it is read.
     pub state: &'a State<f64>,
     /// d_C, m, where it was taken in this period.
     pub distance_m: Option<f64>,
-    /// What the controller answered.
-    pub steering: &'a Steering,
+    /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
+    pub decision: Option<&'a Decision>,
+    /// The flight is over: there is one such moment, the last.
+    pub is_over: bool,
 }
 
-/// The result of a flight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// How it ended.
-    pub ending: Ending,
-    /// Largest d_C in the last quarter, m; [`LOST_M`] if it did not come so far.
-    pub dc_max_m: f64,
-    /// Root mean square of d_C in the last quarter, m; likewise.
-    pub dc_rms_m: f64,
-}
+/// Control periods between two looks at `stop` and two calls of `progress`.
+const CHECK_PERIODS: u64 = 256;
 
-impl Outcome {
-    /// Whether d_C stayed below 25 cm in the last quarter.
-    #[must_use]
-    pub fn is_good(&self) -> bool {
-        self.dc_max_m < GOOD_M
-    }
-}
-
-/// Flies `scenario` from `start` with everything random drawn from `seed`; what flies before it engages is a hover at the thrust that
-/// the controller takes for one. `ground_p3` (m) is where a body that comes to it ends the flight.
+/// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the controller takes for one.
 pub fn fly(
     scenario: &Scenario,
-    start: &State<f64>,
-    seed: Seed,
-    ground_p3: Option<f64>,
-    pilot: &mut impl Steers,
+    plan: &Plan<'_>,
+    pilot: &mut impl Answers,
     watch: &mut impl FnMut(&Moment<'_>),
-) -> Outcome {
-    let told = &scenario.controller.vehicle;
+) -> End {
+    let controller = &scenario.controller;
+    let told = &controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
-    let mut world = World::new(&scenario.world(), start, hover, seed);
-    let rate_hz = scenario.controller.rate_hz;
+    let mut world = World::new(&scenario.world(), &plan.start, hover, plan.seed);
+    let period = 1.0 / controller.rate_hz;
     let steps = scenario.steps();
-    let periods = |seconds: f64| (seconds * rate_hz).round() as u64;
-    let held = scenario.obstacle.map_or(0..0, |o| periods(o.at_s)..periods(o.at_s + o.hold_s));
-    let stopped_at = scenario.obstacle.map(|obstacle| periods(obstacle.at_s));
-    let every = ((DISTANCE_PERIOD_S * rate_hz) as u64).max(1);
-    let judged_from = ((1.0 - JUDGED) * steps as f64) as u64;
-    let lost = |ending| Outcome { ending, dc_max_m: LOST_M, dc_rms_m: LOST_M };
-    let (mut largest, mut squares, mut count) = (0.0_f64, 0.0, 0_u32);
-    let mut last: Option<Steering> = None;
-    for step in 0..steps {
+    let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
+    let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
+    let lost_m = LOST_M.max(2.0 * distance_of(&plan.start));
+
+    let mut zeta = controller.zeta;
+    // What goes on where the pilot misses a sample; none before it begins.
+    let mut last: Option<Decision> = None;
+    let mut told_s = 0.0;
+    let mut end = End::Complete;
+    let mut step = 0;
+    while step < steps {
+        if step % CHECK_PERIODS == 0 && step > 0 {
+            let flown_s = CHECK_PERIODS as f64 * period;
+            (plan.control.progress)(flown_s);
+            told_s += flown_s;
+            if plan.control.stop.load(Ordering::Relaxed) {
+                end = End::Interrupted;
+                break;
+            }
+        }
         let t_s = world.time_s();
-        if stopped_at == Some(step) {
+        if held.as_ref().is_some_and(|held| held.start == step) {
             let attitude = world.body().state().attitude;
             world.stop(libm::atan2(attitude.m21, attitude.m22));
-            last = None;
+            (last, zeta) = (None, [0.0; 4]);
         }
-        if held.contains(&step) {
+        let state = world.body().state();
+        let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
+        if distance_m.is_some_and(|distance| distance > lost_m) {
+            end = End::Lost(t_s);
+            break;
+        }
+        let on_ground = |p3: f64| plan.ground_p3.is_some_and(|ground| p3 >= ground);
+        if on_ground(state.position.z) || on_ground(world.body().uav_position().z) {
+            end = End::Crashed(t_s);
+            break;
+        }
+        let seen = Moment { step, t_s, state: &state, distance_m, decision: None, is_over: false };
+        if held.as_ref().is_some_and(|held| held.contains(&step)) {
+            watch(&seen);
             world.wait();
+            step += 1;
             continue;
         }
         let read = world.read();
-        let steering = if let Some(last) = last.filter(|_| world.misses()) {
+        let decision = if let Some(last) = last.filter(|_| world.misses()) {
             last
         } else {
             if last.is_none() {
-                pilot.take_over(&read, &hover);
+                match plan.entry {
+                    Entry::Stated => pilot.start(&read, zeta),
+                    Entry::Hover => pilot.take_over(&read, &hover),
+                }
             }
-            pilot.steer(&read, t_s)
+            // A controller counts its periods.
+            let Some(decision) = pilot.step(&read, step as f64 * period) else {
+                end = End::Unanswered(t_s);
+                break;
+            };
+            decision
         };
-        last = Some(steering);
-        let state = world.body().state();
-        let distance_m = (step % every == 0).then(|| scenario.controller.law.distance(state.position.into()));
-        watch(&Moment { t_s, state: &state, distance_m, steering: &steering });
-        if let Some(distance) = distance_m {
-            // Not so of a NaN, which the body's finite state cannot give.
-            if distance > LOST_M {
-                return lost(Ending::Lost(t_s));
-            }
-            if step >= judged_from {
-                largest = largest.max(distance);
-                squares += distance * distance;
-                count += 1;
-            }
-        }
-        if ground_p3.is_some_and(|ground| state.position.z >= ground || world.body().uav_position().z >= ground) {
-            return lost(Ending::Crashed(t_s));
-        }
-        let command = &steering.command;
-        world.advance(command);
-        let finite = command.thrust.is_finite() && command.torque.iter().all(|torque| torque.is_finite());
+        last = Some(decision);
+        watch(&Moment { decision: Some(&decision), ..seen });
+        world.advance(&decision.command);
+        step += 1;
+        // Each component: a sum could overflow.
+        let Command { thrust, torque } = &decision.command;
+        let finite = thrust.is_finite() && torque.iter().all(|axis| axis.is_finite());
         if !(finite && world.body().is_finite()) {
-            return lost(Ending::NotFinite(t_s));
+            end = End::NotFinite(t_s);
+            break;
         }
     }
-    let dc_rms_m = (squares / f64::from(count.max(1))).sqrt();
-    Outcome { ending: Ending::Complete, dc_max_m: largest, dc_rms_m }
+    let state = world.body().state();
+    let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
+    watch(&Moment { step, t_s: world.time_s(), state: &state, distance_m, decision: None, is_over: true });
+    (plan.control.progress)(scenario.duration_s - told_s);
+    end
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use crate::describe::scenario::{Law, Scenario};
-use crate::fly::run::Sample;
-use witness::plant::index;
+use crate::fly::flight::Moment;
+use controller::Vector3;
 
 /// d_C below which a flight counts as settled, m.
 pub const SETTLED_M: f64 = 0.05;
@@ -87,7 +87,7 @@ pub struct Metrics<'a> {
     hover_thrust: f64,
     released_s: Option<f64>,
     steady_from_s: Option<f64>,
-    half_period: f64,
+    period: f64,
     first_below_s: Option<f64>,
     last_above: bool,
     settle_s: f64,
@@ -112,7 +112,7 @@ impl<'a> Metrics<'a> {
             hover_thrust: scenario.vehicle.total_mass() * scenario.vehicle.gravity,
             released_s: scenario.obstacle.map(|obstacle| obstacle.at_s + obstacle.hold_s),
             steady_from_s: scenario.steady_from_s,
-            half_period: 0.5 / scenario.controller.rate_hz,
+            period: 1.0 / scenario.controller.rate_hz,
             first_below_s: None,
             last_above: false,
             settle_s: 0.0,
@@ -129,10 +129,8 @@ impl<'a> Metrics<'a> {
         }
     }
 
-    /// Adds a sample whose command is held for `hold_s` seconds.
-    pub fn push(&mut self, sample: &Sample, hold_s: f64) {
-        let t = sample.t_s;
-        let distance = self.law.distance(group(&sample.x, index::POSITION));
+    /// Adds what is seen at `t` (s), d_C (m) from the curve.
+    pub fn push(&mut self, t: f64, distance: f64, moment: &Moment<'_>) {
         // Comparisons that a NaN fails: a flight that ends as none has not settled.
         if distance < SETTLED_M {
             self.first_below_s.get_or_insert(t);
@@ -144,7 +142,7 @@ impl<'a> Metrics<'a> {
             self.last_above = true;
         }
         // Sample times are whole periods up to rounding.
-        let reached = |from: Option<f64>| from.is_some_and(|from| t > from - self.half_period);
+        let reached = |from: Option<f64>| from.is_some_and(|from| t > from - 0.5 * self.period);
         if reached(self.released_s) {
             self.dc_after_release = Some(self.dc_after_release.unwrap_or(0.0).max(distance));
         }
@@ -155,15 +153,15 @@ impl<'a> Metrics<'a> {
         if reached(self.steady_from_s)
             && let Some(circle) = self.law.circle()
         {
-            let [radius, p3, speed] = circle_errors(&sample.x, circle);
+            let [radius, p3, speed] = circle_errors(&moment.state.position, &moment.state.velocity, circle);
             self.radius.push(radius);
             self.p3.push(p3);
             self.speed.push(speed);
         }
-        if let Some(decision) = &sample.decision {
-            let thrust = decision.input.thrust;
-            let torque = decision.input.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
-            self.effort += (thrust - self.hover_thrust).hypot(torque) * hold_s;
+        if let Some(decision) = moment.decision {
+            let thrust = decision.command.thrust;
+            let torque = decision.command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
+            self.effort += (thrust - self.hover_thrust).hypot(torque) * self.period;
             self.peak_u = self.peak_u.max(thrust.hypot(torque));
             self.min_thrust = self.min_thrust.min(thrust);
             self.peak_torque = self.peak_torque.max(torque);
@@ -194,13 +192,7 @@ impl<'a> Metrics<'a> {
 
 /// Errors of radius (m), p3 (m) and speed along (−p2, p1, 0)/r (m/s), against those of `circle` ([`Law::circle`]).
 #[must_use]
-pub fn circle_errors(x: &[f64; 16], [radius, height, speed]: [f64; 3]) -> [f64; 3] {
-    let [p1, p2, p3] = group(x, index::POSITION);
-    let [v1, v2, _] = group(x, index::VELOCITY);
-    let from_axis = p1.hypot(p2);
-    [from_axis - radius, p3 - height, (p1 * v2 - p2 * v1) / from_axis - speed]
-}
-
-fn group(x: &[f64; 16], first: usize) -> [f64; 3] {
-    [x[first], x[first + 1], x[first + 2]]
+pub fn circle_errors(p: &Vector3<f64>, v: &Vector3<f64>, [radius, height, speed]: [f64; 3]) -> [f64; 3] {
+    let from_axis = p.x.hypot(p.y);
+    [from_axis - radius, p.z - height, (p.x * v.y - p.y * v.x) / from_axis - speed]
 }

@@ -1,16 +1,18 @@
 //! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
 
 use controller::flight::envelope::Margins;
-use controller::{Command, Disturbance, Follower, Real, SetupError, State, Tracker, Vector3, Vehicle};
+use controller::{Command, Disturbance, Fault, Follower, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle};
 
 use crate::describe::course::{ReferenceSpec, Route};
 use crate::describe::scenario::{ControllerSpec, Law};
-use witness::plant::Input;
 
 /// Whatever answers states with commands: a law in this program, or a target at the other end of a link.
 pub trait Answers {
     /// Starts from a stated ζ, with integrals at zero.
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]);
+
+    /// Takes over from whatever applied `applied` until now, without a bump in thrust.
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>);
 
     /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there will be no more.
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision>;
@@ -28,10 +30,16 @@ pub enum Pilot<T> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision {
     /// Thrust and torque for the coming hold.
-    pub input: Input,
+    pub command: Command<f64>,
     /// ζ at the sample, m/s²⁺ᵏ.
     pub zeta: [f64; 4],
-    /// Where it came from; of a target at the other end of a link, with the samples that are logged.
+    /// What the vehicle is doing; [`Mode::Follow`] of a law alone.
+    pub mode: Mode,
+    /// Why it is not doing what was asked for; none of a target's, whose link counts them.
+    pub fault: Option<Fault>,
+    /// What the observers hold; of a target at the other end of a link it does not come.
+    pub disturbance: Option<Disturbance<f64>>,
+    /// The law's own numbers, where it was asked; of a target they come with the samples that are logged.
     pub telemetry: Option<Telemetry>,
 }
 
@@ -64,7 +72,8 @@ pub struct Observed {
 }
 
 impl Observed {
-    fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
+    /// Of what was `found` for this vehicle, rod and λ.
+    pub(crate) fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
         let numbers = |v: Vector3<T>| v.map(T::to_f64).into();
         Self {
             payload_force: numbers(found.payload_force(vehicle, rod)),
@@ -96,67 +105,37 @@ impl<T: Real> Pilot<T> {
         })
     }
 
-    /// Takes over from whatever applied `applied` until now, without a bump in thrust.
-    pub fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        let applied = applied.cast();
-        match self {
-            Self::Follow(follower) => follower.take_over(&state.cast(), applied),
-            Self::Track(tracker, _) => tracker.take_over(&state.cast(), applied),
-        }
-    }
-
-    /// The disturbances found up to the last sample.
-    #[must_use]
-    pub fn disturbance(&self) -> Disturbance<f64> {
-        match self {
-            Self::Follow(follower) => follower.disturbance().cast(),
-            Self::Track(tracker, _) => tracker.disturbance().cast(),
-        }
-    }
-
-    /// Starts from a stated ζ, with integrals at zero.
-    pub fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        let (state, zeta) = (state.cast(), zeta.map(T::lit));
-        match self {
-            Self::Follow(follower) => follower.start(&state, zeta),
-            Self::Track(tracker, _) => tracker.start(&state, zeta),
-        }
-    }
-
     /// The command for the hold that begins at `t_s`, from the state sampled then.
     #[inline]
-    pub fn step(&mut self, state: &State<f64>, t_s: f64) -> Decision {
+    pub fn decide(&mut self, state: &State<f64>, t_s: f64) -> Decision {
         let state = state.cast();
         let (zeta, integral) = match self {
             Self::Follow(follower) => (*follower.zeta(), *follower.integral()),
             Self::Track(tracker, _) => (*tracker.zeta(), [T::zero(); 3]),
         };
-        let mut xi = [0.0; 20];
-        let mut fill = |parts: &[&[T]]| {
-            for (slot, value) in xi.iter_mut().zip(parts.iter().copied().flatten()) {
-                *slot = value.to_f64();
-            }
-        };
-        let (command, nu, margins, found, vehicle) = match self {
+        let (command, xi, nu, margins, found, vehicle) = match self {
             Self::Follow(follower) => {
                 let solution = follower.step(&state);
-                fill(&[&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
-                (solution.command, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
+                let xi = padded([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
+                (solution.command, xi, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
             }
             Self::Track(tracker, reference) => {
                 let solution = tracker.step(&state, &reference.at(t_s));
                 let [p1, p2, p3] = &solution.xi.position;
-                fill(&[p1, p2, p3, &solution.xi.yaw]);
-                (solution.command, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
+                let xi = padded([p1, p2, p3, &solution.xi.yaw]);
+                (solution.command, xi, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
             }
         };
         Decision {
-            input: input(&command),
-            zeta: zeta.map(T::to_f64),
+            command: command.cast(),
+            zeta: zeta.map(T::cast),
+            mode: Mode::Follow,
+            fault: None,
+            disturbance: Some(found.cast()),
             telemetry: Some(Telemetry {
-                integral: integral.map(T::to_f64),
+                integral: integral.map(T::cast),
                 xi,
-                nu: nu.map(T::to_f64),
+                nu: nu.map(T::cast),
                 margins: margins.cast(),
                 observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
             }),
@@ -164,18 +143,33 @@ impl<T: Real> Pilot<T> {
     }
 }
 
+/// ξ's parts one after the other.
+pub(crate) fn padded<T: Real>(parts: [&[T]; 4]) -> [f64; 20] {
+    let mut xi = [0.0; 20];
+    for (slot, &value) in xi.iter_mut().zip(parts.into_iter().flatten()) {
+        *slot = value.cast();
+    }
+    xi
+}
+
 impl<T: Real> Answers for Pilot<T> {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        Self::start(self, state, zeta);
+        let (state, zeta) = (state.cast(), zeta.map(T::lit));
+        match self {
+            Self::Follow(follower) => follower.start(&state, zeta),
+            Self::Track(tracker, _) => tracker.start(&state, zeta),
+        }
+    }
+
+    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
+        match self {
+            Self::Follow(follower) => follower.take_over(&state.cast(), applied.cast()),
+            Self::Track(tracker, _) => tracker.take_over(&state.cast(), applied.cast()),
+        }
     }
 
     #[inline]
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        Some(Self::step(self, state, t_s))
+        Some(self.decide(state, t_s))
     }
-}
-
-/// A command as the plant takes it.
-pub fn input<T: Real>(command: &Command<T>) -> Input {
-    Input { thrust: command.thrust.to_f64(), torque: command.torque.map(T::to_f64).into() }
 }

@@ -1,7 +1,6 @@
 //! `hil-sim hil`: its arguments, its flights, and what it has to say about the link.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -11,7 +10,8 @@ use serde::Serialize;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target};
 use crate::describe::scenario::Scenario;
 use crate::fly::batch::Outcome;
-use crate::fly::run::{self, Arithmetic, End};
+use crate::fly::flight::{Control, End};
+use crate::fly::run;
 
 /// Where the target is: one of these.
 #[derive(Args, Clone, Debug)]
@@ -115,12 +115,7 @@ pub struct Flown {
 /// # Errors
 /// The target can't be reached, or can't fly one of the scenarios: that is found out before the first. A target that is lost ends the flights; those
 /// before are kept.
-pub fn fly_all(
-    arguments: &Arguments,
-    scenarios: Vec<Scenario>,
-    stop: &AtomicBool,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Flown, HilError> {
+pub fn fly_all(arguments: &Arguments, scenarios: Vec<Scenario>, control: Control<'_>) -> Result<Flown, HilError> {
     let options = Options {
         pace: if arguments.real_time { Pace::RealTime } else { Pace::Lockstep },
         patience: Duration::from_secs_f64(arguments.patience),
@@ -142,9 +137,8 @@ pub fn fly_all(
         _ => return Err(HilError::Endpoint(String::new())),
     };
     let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
-    let fly = run::Options { arithmetic: Arithmetic::F32, twin: options.telemetry, stop, progress };
     for scenario in scenarios {
-        match fly_one(&mut target, scenario, fly, &mut flown) {
+        match fly_one(&mut target, scenario, (options.telemetry, control), &mut flown) {
             Ok(true) => {}
             Ok(false) => break,
             Err(error) if flown.outcomes.is_empty() => return Err(error),
@@ -161,12 +155,13 @@ pub fn fly_all(
 fn fly_one(
     target: &mut Target,
     scenario: Scenario,
-    options: run::Options<'_>,
+    (twin, control): (bool, Control<'_>),
     flown: &mut Flown,
 ) -> Result<bool, HilError> {
     target.prepare(&scenario)?;
     let begun = Instant::now();
-    let flight = run::fly_on(&scenario, target, options).map_err(|error| HilError::Unsupported(error.to_string()))?;
+    let mut flight =
+        run::fly_on(&scenario, target, twin, control).map_err(|error| HilError::Unsupported(error.to_string()))?;
     let elapsed_s = begun.elapsed().as_secs_f64();
     let end = flight.end;
     if end == End::Interrupted {
@@ -175,8 +170,9 @@ fn fly_one(
     }
     let steps = target.statistics().cycles.len();
     flown.links.push(link_report(&scenario.name, target.statistics(), elapsed_s, target.counts_per_instruction()));
-    let times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
-    flown.outcomes.push(Outcome { scenario, flight, times_real_time });
+    // Of the target's time, not of this program's.
+    flight.times_real_time = steps as f64 / scenario.controller.rate_hz / elapsed_s;
+    flown.outcomes.push(Outcome { scenario, flight });
     if let End::Unanswered(_) = end {
         flown.failure = target.take_failure();
         return Ok(false);

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant};
 
 use autopilot::{Parameter, Parameters};
-use controller::State;
 use controller::flight::envelope::Margins;
+use controller::{Command, Mode, State, Vector3};
 use link::MavMessage;
 use link::dialect::*;
 
@@ -12,7 +12,6 @@ use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
-use witness::plant::Input;
 
 /// A target that is ready to fly.
 pub struct Target {
@@ -310,7 +309,6 @@ impl Target {
         self.line.statistics.cycles.push(command.cycles);
         // The answer has ζ at the hold's end; a decision has it at its start.
         let zeta = std::mem::replace(&mut self.zeta, command.zeta.map(f64::from));
-        let input = Input { thrust: command.thrust.into(), torque: command.torque.map(f64::from) };
         let telemetry = telemetry.map(|data| Telemetry {
             integral: data.integral.map(f64::from),
             xi: data.xi.map(f64::from),
@@ -331,7 +329,14 @@ impl Target {
                 payload_mass: data.payload_mass.into(),
             },
         });
-        Ok(Decision { input, zeta, telemetry })
+        Ok(Decision {
+            command: Command { thrust: command.thrust.into(), torque: Vector3::from(command.torque).map(f64::from) },
+            zeta,
+            mode: mode(command.mode),
+            fault: None,
+            disturbance: None,
+            telemetry,
+        })
     }
 }
 
@@ -340,12 +345,29 @@ impl Answers for Target {
         self.start = Some(zeta);
     }
 
+    fn take_over(&mut self, _: &State<f64>, _: &Command<f64>) {
+        self.start = Some([0.0; 4]);
+    }
+
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
         let answer = match self.line.options().pace {
             Pace::Lockstep => self.lockstep(state, t_s),
             Pace::RealTime => self.real_time(state, t_s),
         };
         answer.map_err(|error| self.failure = Some(error)).ok()
+    }
+}
+
+/// What the target says that it is doing.
+fn mode(mode: LoadMode) -> Mode {
+    match mode {
+        LoadMode::LOAD_MODE_OFF => Mode::Off,
+        LoadMode::LOAD_MODE_IDLE => Mode::Idle,
+        LoadMode::LOAD_MODE_ENGAGE => Mode::Join,
+        LoadMode::LOAD_MODE_FOLLOW => Mode::Follow,
+        LoadMode::LOAD_MODE_HOLD => Mode::Hold,
+        LoadMode::LOAD_MODE_LAND => Mode::Land,
+        LoadMode::LOAD_MODE_FAULT => Mode::Fault,
     }
 }
 

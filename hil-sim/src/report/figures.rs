@@ -5,8 +5,9 @@ use plotters::prelude::*;
 use super::plot::{Area, COLOURS, Curve, Drawn, Track, elevation, plan, space, time, time_log};
 use super::{Figure, ReportError};
 use crate::fly::batch::Outcome;
-use crate::fly::run::Sample;
-use witness::plant::{Input, index};
+use crate::fly::sample::Sample;
+use controller::{Command, Vector3};
+use witness::plant::index;
 
 /// Most points drawn of a curve: as many as a figure has pixels across.
 const POINTS: usize = 1000;
@@ -267,20 +268,21 @@ fn position(sample: &Sample) -> [f64; 3] {
     std::array::from_fn(|axis| sample.x[index::POSITION + axis])
 }
 
-fn distance(run: &Outcome, sample: &Sample) -> Option<f64> {
-    Some(run.scenario.controller.law.distance(position(sample)))
+fn distance(_: &Outcome, sample: &Sample) -> Option<f64> {
+    Some(sample.distance_m)
 }
 
-fn command(sample: &Sample) -> Option<&Input> {
-    sample.decision.as_ref().map(|decision| &decision.input)
+fn command(sample: &Sample) -> Option<&Command<f64>> {
+    sample.decision.as_ref().map(|decision| &decision.command)
 }
 
-fn torque(input: &Input) -> f64 {
-    input.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt()
+fn torque(command: &Command<f64>) -> f64 {
+    command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt()
 }
 
 /// Errors of radius (m), p3 (m) and speed (m/s), where a horizontal circle is flown.
 fn against_circle(run: &Outcome, sample: &Sample) -> Option<[f64; 3]> {
     let circle = run.scenario.controller.law.circle()?;
-    Some(crate::fly::metrics::circle_errors(&sample.x, circle))
+    let group = |first: usize| Vector3::from_fn(|axis, _| sample.x[first + axis]);
+    Some(crate::fly::metrics::circle_errors(&group(index::POSITION), &group(index::VELOCITY), circle))
 }

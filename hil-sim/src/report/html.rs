@@ -98,7 +98,7 @@ fn table(outcomes: &[&Outcome], reference: &Reference) -> Markup {
                                 }
                             }
                             td { @if let Some(deviation) = outcome.flight.deviation { (format!("{:.1e}", deviation.max())) } }
-                            td { (format!("{:.0}", outcome.times_real_time)) }
+                            td { (format!("{:.0}", outcome.flight.times_real_time)) }
                         }
                     }
                 }

@@ -1,7 +1,6 @@
 //! The CSV file of a flight: one line a logged sample, SI units and radians, empty where there is no command, or no telemetry.
 
 use crate::fly::batch::Outcome;
-use witness::plant::index;
 
 const COLUMNS: [&str; 50] = [
     "t_s",
@@ -60,16 +59,14 @@ const COLUMNS: [&str; 50] = [
 pub fn csv(outcome: &Outcome) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(COLUMNS)?;
-    let law = &outcome.scenario.controller.law;
     for sample in &outcome.flight.log {
-        let position = std::array::from_fn(|axis| sample.x[index::POSITION + axis]);
         let mut line = Vec::with_capacity(COLUMNS.len());
         line.push(sample.t_s);
         line.extend(sample.x);
-        line.push(law.distance(position));
+        line.push(sample.distance_m);
         if let Some(decision) = &sample.decision {
-            line.push(decision.input.thrust);
-            line.extend(decision.input.torque);
+            line.push(decision.command.thrust);
+            line.extend(&decision.command.torque);
             line.extend(decision.zeta);
         }
         if let Some(telemetry) = sample.decision.and_then(|decision| decision.telemetry) {

@@ -5,8 +5,8 @@ use serde::Serialize;
 use crate::describe::reference::Reference;
 use crate::fly::batch::Outcome;
 use crate::fly::deviation::Deviation;
+use crate::fly::flight::End;
 use crate::fly::metrics::Results;
-use crate::fly::run::End;
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -48,8 +48,8 @@ pub fn json(outcomes: &[Outcome], reference: &Reference) -> String {
             results: &outcome.flight.results,
             f32_f64_max_relative: outcome.flight.deviation.map(|deviation| deviation.max()),
             f32_f64_relative: outcome.flight.deviation,
-            times_real_time: outcome.times_real_time,
-            times_real_time_with_twin: outcome.flight.times_real_time,
+            times_real_time: outcome.flight.times_real_time,
+            times_real_time_with_twin: outcome.flight.times_real_time_with_twin,
             reference: reference.runs.get(&outcome.scenario.name),
         })
         .collect();

@@ -5,7 +5,6 @@ use comfy_table::{CellAlignment, Table};
 use crate::describe::reference::Reference;
 use crate::fly::batch::Outcome;
 use crate::fly::metrics::Results;
-use crate::fly::run::End;
 
 /// How a column's number is written.
 type Format = fn(f64) -> String;
@@ -70,7 +69,7 @@ pub fn table(outcomes: &[Outcome], reference: &Reference) -> String {
             format!("{}\n{}", text(&flight.results), text(&expected))
         }));
         row.push(flight.deviation.map(|deviation| format!("{:.1e}", deviation.max())).unwrap_or_default());
-        row.push(format!("{:.0}", outcome.times_real_time));
+        row.push(format!("{:.0}", flight.times_real_time));
         table.add_row(row);
     }
     for column in table.column_iter_mut().skip(2) {
@@ -82,10 +81,8 @@ pub fn table(outcomes: &[Outcome], reference: &Reference) -> String {
 /// The scenario's name, with how the flight ended if not at its end.
 fn name(outcome: &Outcome) -> String {
     let name = &outcome.scenario.name;
-    match outcome.flight.end {
-        End::Complete => name.clone(),
-        End::Interrupted => format!("{name}\ninterrupted"),
-        End::NotFinite(at_s) => format!("{name}\nlost at {at_s:.3} s"),
-        End::Unanswered(at_s) => format!("{name}\nunanswered from {at_s:.3} s"),
+    match outcome.flight.end.failure() {
+        None => name.clone(),
+        Some(failure) => format!("{name}\n{failure}"),
     }
 }

@@ -14,7 +14,6 @@ use serde_json::Value;
 
 use crate::describe::course::{PathSpec, ReferenceSpec, parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
-use crate::fly::pilot;
 use witness::law::{Evaluation, Operating};
 use witness::plant::{self, VehicleParameters};
 
@@ -296,11 +295,11 @@ fn pad<const R: usize>(row: [f64; R]) -> [f64; 6] {
 }
 
 fn answer<T: Real, X>(solution: &controller::Solution<T, X>, xi: &[&[T]]) -> Answer {
-    let input = pilot::input(&solution.command);
+    let command = solution.command.cast::<f64>();
     Answer {
-        thrust: input.thrust,
+        thrust: command.thrust,
         u_zeta: solution.u_zeta.to_f64(),
-        torque: input.torque,
+        torque: command.torque.into(),
         xi: xi.iter().copied().flatten().map(|value| value.to_f64()).collect(),
         nu: solution.nu.map(T::to_f64),
         margins: solution.margins.cast().into(),

@@ -10,7 +10,9 @@ use super::file::{ApproachFields, Campaign, Drawn};
 use crate::describe::input::Invalid;
 use crate::describe::route::Route;
 use crate::describe::scenario::{ControllerSpec, Law};
-use crate::fly::flight::{Ending, LOST_M, Moment, Outcome, Steering, Steers, fly};
+use crate::fly::flight::{Control, End, LOST_M, Moment};
+use crate::fly::judge::{GOOD_M, Outcome, judge};
+use crate::fly::pilot::{Answers, Decision, Observed, Telemetry, padded};
 use crate::world::Seed;
 
 /// The supervised law in f32, asked to follow its path from the first step on.
@@ -45,21 +47,37 @@ impl Supervised {
     }
 }
 
-impl Steers for Supervised {
+impl Answers for Supervised {
+    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
+        self.supervisor.start(&state.cast(), zeta.map(|z| z as f32));
+    }
+
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
         self.supervisor.take_over(&state.cast(), applied.cast());
     }
 
     #[inline]
-    fn steer(&mut self, state: &State<f64>, _: f64) -> Steering {
-        let output = self.supervisor.step(&state.cast(), Request::Follow);
-        Steering {
+    fn step(&mut self, state: &State<f64>, _: f64) -> Option<Decision> {
+        let state = state.cast();
+        let follower = self.supervisor.follower();
+        let (zeta, integral) = (*follower.zeta(), *follower.integral());
+        let output = self.supervisor.step(&state, Request::Follow);
+        let (found, vehicle) = (self.supervisor.disturbance(), self.supervisor.follower().vehicle());
+        let telemetry = self.supervisor.solution().map(|solution| Telemetry {
+            integral: integral.map(f64::from),
+            xi: padded([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]),
+            nu: solution.nu.map(f64::from),
+            margins: solution.margins.cast(),
+            observed: Observed::new(found, vehicle, &state.rod, solution.margins.lambda),
+        });
+        Some(Decision {
             command: output.command.cast(),
-            margins: self.supervisor.solution().map(|solution| solution.margins.cast()),
+            zeta: zeta.map(f64::from),
             mode: output.mode,
             fault: output.fault,
-            disturbance: self.supervisor.disturbance().cast(),
-        }
+            disturbance: Some(found.cast()),
+            telemetry,
+        })
     }
 }
 
@@ -144,11 +162,16 @@ pub struct Row {
 /// Instants at which a row has d_C.
 pub const INSTANTS: usize = 16;
 
-/// Flies one flight of a campaign; `watch` sees every period.
+/// Flies one flight of a campaign; `watch` sees every period. `None` if it was interrupted.
 ///
 /// # Errors
 /// [`Invalid`] if the drawn scenario is not valid or cannot be set up.
-pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_>)) -> Result<Row, Invalid> {
+pub fn fly_run(
+    campaign: &Campaign,
+    seed: Seed,
+    control: Control<'_>,
+    watch: &mut dyn FnMut(&Moment<'_>),
+) -> Result<Option<Row>, Invalid> {
     let Drawn { scenario, start } = campaign.draw(seed)?;
     let controller = &scenario.controller;
     let mut pilot = Supervised::new(controller, &campaign.approach)
@@ -172,10 +195,11 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
     };
     let mut over_time: Vec<f64> = Vec::with_capacity(INSTANTS);
     let (mut mode, mut fault, mut flying) = (Mode::Off, None, false);
-    let outcome = fly(&scenario, &start.state, seed, campaign.ground_p3, &mut pilot, &mut |moment| {
-        let Steering { command, margins, .. } = moment.steering;
-        mode = moment.steering.mode;
-        if let Some(now) = moment.steering.fault
+    let outcome = judge(&scenario, start.state, seed, campaign.ground_p3, control, &mut pilot, &mut |moment| {
+        let Some(decision) = moment.decision else { return };
+        let Decision { command, telemetry, .. } = decision;
+        mode = decision.mode;
+        if let Some(now) = decision.fault
             && fault != Some(now)
         {
             fault = Some(now);
@@ -192,7 +216,7 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
             Mode::Follow => row.follow_s += period,
             _ => {}
         }
-        if let Some(margins) = margins {
+        if let Some(Telemetry { margins, .. }) = telemetry {
             row.least_q3 = row.least_q3.min(margins.q3);
             row.least_q_b3 = row.least_q_b3.min(margins.q_b3);
             row.least_tension = row.least_tension.min(-margins.lambda * controller.vehicle.payload_mass);
@@ -207,7 +231,7 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
         row.largest_thrust = row.largest_thrust.max(command.thrust);
         row.largest_torque = row.largest_torque.max(command.torque.amax());
         if let Some(distance) = moment.distance_m {
-            if distance < crate::fly::flight::GOOD_M {
+            if distance < GOOD_M {
                 row.reached_s.get_or_insert(moment.t_s);
             } else {
                 row.reached_s = None;
@@ -218,18 +242,19 @@ pub fn fly_run(campaign: &Campaign, seed: Seed, watch: &mut dyn FnMut(&Moment<'_
         }
         watch(moment);
     });
-    let Outcome { ending, dc_max_m, dc_rms_m } = outcome;
-    (row.verdict, row.end_s) = match ending {
-        Ending::Complete if outcome.is_good() => (Verdict::Good, scenario.duration_s),
-        Ending::Complete if mode == Mode::Hold => (Verdict::Held, scenario.duration_s),
-        Ending::Complete => (Verdict::Off, scenario.duration_s),
-        Ending::Crashed(t_s) => (Verdict::Crashed, t_s),
-        Ending::Lost(t_s) => (Verdict::Lost, t_s),
-        Ending::NotFinite(t_s) => (Verdict::NonFinite, t_s),
+    let Some(outcome) = outcome else { return Ok(None) };
+    let Outcome { end, dc_max_m, dc_rms_m } = outcome;
+    (row.verdict, row.end_s) = match end {
+        End::Crashed(t_s) => (Verdict::Crashed, t_s),
+        End::Lost(t_s) => (Verdict::Lost, t_s),
+        End::NotFinite(t_s) => (Verdict::NonFinite, t_s),
+        _ if outcome.is_good() => (Verdict::Good, scenario.duration_s),
+        _ if mode == Mode::Hold => (Verdict::Held, scenario.duration_s),
+        _ => (Verdict::Off, scenario.duration_s),
     };
     over_time.resize(INSTANTS, LOST_M);
     row.dc_over_time_m = over_time.iter().map(|distance| format!("{distance:.4}")).collect::<Vec<_>>().join(";");
-    Ok(Row { mode: format!("{mode:?}").to_lowercase(), dc_max_m, dc_rms_m, ..row })
+    Ok(Some(Row { mode: format!("{mode:?}").to_lowercase(), dc_max_m, dc_rms_m, ..row }))
 }
 
 /// A fault in a word or two.

@@ -25,6 +25,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::describe::input::Invalid;
+use crate::fly::flight::Control;
 use crate::world::Seed;
 
 /// Why a campaign stopped.
@@ -68,10 +69,11 @@ pub fn run(
                 if stop.load(Ordering::Relaxed) {
                     return Ok(None);
                 }
-                let row = fly_run(campaign, Seed { batch: identity.seed, run }, &mut |_| {})
+                let control = Control { stop, progress: &|_| {} };
+                let row = fly_run(campaign, Seed { batch: identity.seed, run }, control, &mut |_| {})
                     .map_err(|invalid| CampaignError::Flight { run, invalid })?;
-                progress(1);
-                Ok(Some(row))
+                progress(u64::from(row.is_some()));
+                Ok(row)
             })
             .collect::<Result<_, CampaignError>>()?;
         // Rows after a gap that an interruption left are flown again.

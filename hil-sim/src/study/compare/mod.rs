@@ -18,11 +18,11 @@ pub use table::{table, worse};
 use controller::{ObserverParams, TrackGains};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::describe::course::ReferenceSpec;
 use crate::describe::scenario::{Law, Scenario, ScenarioError};
-use crate::fly::flight::{LOST_M, Outcome, fly};
+use crate::fly::flight::{Control, LOST_M};
+use crate::fly::judge::{Outcome, judge};
 use crate::fly::pilot::Pilot;
 use crate::world::Seed;
 use crate::world::random::Purpose;
@@ -137,8 +137,8 @@ pub fn contend(base: &Scenario, contender: Contender, bandwidth: f64) -> Scenari
     scenario
 }
 
-/// One flight: its outcome, and d_C every [`TRACE_PERIOD_S`].
-fn fly_one(scenario: &Scenario, case: &Case, seed: Seed) -> (Outcome, Vec<f32>) {
+/// One flight: its outcome, and d_C every [`TRACE_PERIOD_S`]; `None` if it was interrupted.
+fn fly_one(scenario: &Scenario, case: &Case, seed: Seed, control: Control<'_>) -> Option<(Outcome, Vec<f32>)> {
     let mut scenario = scenario.clone();
     let mut random = seed.stream(Purpose::Draw);
     let [radius, p3, _] = scenario.controller.law.circle().unwrap_or([5.0, -10.0, 1.0]);
@@ -148,18 +148,18 @@ fn fly_one(scenario: &Scenario, case: &Case, seed: Seed) -> (Outcome, Vec<f32>) 
     let points = (scenario.duration_s / TRACE_PERIOD_S) as usize;
     // The numbers of the comparison are constants that f32 holds, as the tests show.
     let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
-    let outcome = fly(&scenario, &start, seed, None, &mut pilot, &mut |moment| {
+    let outcome = judge(&scenario, start, seed, None, control, &mut pilot, &mut |moment| {
         if let Some(distance) = moment.distance_m
             && moment.t_s >= TRACE_PERIOD_S * trace.len() as f64 - 1e-9
         {
             trace.push(distance as f32);
         }
-    });
+    })?;
     trace.resize(points, LOST_M as f32);
-    (outcome, trace)
+    Some((outcome, trace))
 }
 
-/// Flies `runs` flights for every case and law whose names `wanted` accepts; `None` once `stop` is true.
+/// Flies `runs` flights for every case and law whose names `wanted` accepts; `None` if interrupted.
 ///
 /// # Errors
 /// [`ScenarioError`] as [`base`].
@@ -168,8 +168,7 @@ pub fn compare(
     seed: u64,
     bandwidth: f64,
     wanted: &(dyn Fn(&str) -> bool + Sync),
-    stop: &AtomicBool,
-    progress: &(dyn Fn(f64) + Sync),
+    control: Control<'_>,
 ) -> Result<Option<Comparison>, ScenarioError> {
     let base = base()?;
     let mut rows = Vec::new();
@@ -178,12 +177,7 @@ pub fn compare(
             let scenario = contend(&base, contender, bandwidth);
             let flights: Option<Vec<(Outcome, Vec<f32>)>> = (0..runs as u64)
                 .into_par_iter()
-                .map(|run| {
-                    let flown =
-                        (!stop.load(Ordering::Relaxed)).then(|| fly_one(&scenario, case, Seed { batch: seed, run }));
-                    progress(scenario.duration_s);
-                    flown
-                })
+                .map(|run| fly_one(&scenario, case, Seed { batch: seed, run }, control))
                 .collect();
             let Some(flights) = flights else { return Ok(None) };
             rows.push(row(case, contender, &flights));
@@ -255,7 +249,8 @@ mod tests {
             let mut scenario = contend(&base, contender, BANDWIDTH);
             scenario.duration_s = 0.5;
             for case in CASES {
-                let (first, again) = (fly_one(&scenario, case, seed), fly_one(&scenario, case, seed));
+                let fly = || fly_one(&scenario, case, seed, Control::alone());
+                let (first, again) = (fly(), fly());
                 assert_eq!(first, again, "{} {}", case.name, contender.name());
             }
         }
@@ -270,12 +265,14 @@ mod tests {
         let told = controller::Vehicle::new(scenario.controller.vehicle).expect("Table I");
         let mut missed_n = 0.0_f64;
         let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it can be set up");
-        let outcome = fly(&scenario, &start, Seed::default(), None, &mut pilot, &mut |moment| {
-            let found = moment.steering.disturbance.payload_force(&told, &moment.state.rod);
+        let outcome = judge(&scenario, start, Seed::default(), None, Control::alone(), &mut pilot, &mut |moment| {
+            let Some(found) = moment.decision.and_then(|decision| decision.disturbance) else { return };
+            let found = found.payload_force(&told, &moment.state.rod);
             if moment.t_s >= 3.0 {
                 missed_n = missed_n.max((found.x - 0.6).hypot(found.y - 0.8));
             }
-        });
+        })
+        .expect("nobody interrupts it");
         assert!(outcome.dc_max_m <= 5e-3, "{outcome:?}");
         assert!(missed_n <= 0.02, "{missed_n} N");
     }

@@ -9,7 +9,6 @@
 use rayon::prelude::*;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use controller::TrackGains;
 
@@ -17,7 +16,8 @@ use super::cases::all;
 use super::table::length;
 use super::{BANDWIDTH, Contender, base, contend, percentile, start};
 use crate::describe::scenario::{Law, Obstacle, Scenario, ScenarioError};
-use crate::fly::flight::{LOST_M, fly};
+use crate::fly::flight::{Control, LOST_M};
+use crate::fly::judge::judge;
 use crate::fly::metrics::SETTLED_M;
 use crate::fly::pilot::Pilot;
 use crate::world::Seed;
@@ -110,16 +110,11 @@ pub struct Policies {
     pub lines: Vec<Line>,
 }
 
-/// Flies each policy from `runs` starts in every trial; `None` once `stop` is true.
+/// Flies each policy from `runs` starts in every trial; `None` if interrupted.
 ///
 /// # Errors
 /// [`ScenarioError`] as [`base`].
-pub fn policies(
-    runs: usize,
-    seed: u64,
-    stop: &AtomicBool,
-    progress: &(dyn Fn(f64) + Sync),
-) -> Result<Option<Policies>, ScenarioError> {
+pub fn policies(runs: usize, seed: u64, control: Control<'_>) -> Result<Option<Policies>, ScenarioError> {
     let base = base()?;
     let following = contend(&base, Contender::Observer, BANDWIDTH);
     let equal = contend(&base, Contender::TrackingObserver, BANDWIDTH);
@@ -137,10 +132,8 @@ pub fn policies(
             .into_par_iter()
             .map(|run| {
                 let seed = Seed { batch: seed, run };
-                let measured =
-                    (!stop.load(Ordering::Relaxed)).then(|| scenarios.each_ref().map(|s| measure(s, trial, seed)));
-                progress(3.0 * base.duration_s);
-                measured
+                let [following, equal, slower] = scenarios.each_ref().map(|s| measure(s, trial, seed, control));
+                Some([following?, equal?, slower?])
             })
             .collect();
         let Some(flown) = flown else { return Ok(None) };
@@ -177,7 +170,7 @@ impl Measured {
     }
 }
 
-fn measure(scenario: &Scenario, trial: &Trial, seed: Seed) -> Measured {
+fn measure(scenario: &Scenario, trial: &Trial, seed: Seed, control: Control<'_>) -> Option<Measured> {
     let mut scenario = scenario.clone();
     let mut random = seed.stream(Purpose::Draw);
     let [radius, p3, _] = scenario.controller.law.circle().unwrap_or([5.0, -10.0, 1.0]);
@@ -190,8 +183,9 @@ fn measure(scenario: &Scenario, trial: &Trial, seed: Seed) -> Measured {
     let mut measured = Measured::default();
     let mut settled = None;
     let mut has_been_below = false;
-    let outcome = fly(&scenario, &start, seed, None, &mut pilot, &mut |moment| {
-        let command = &moment.steering.command;
+    let outcome = judge(&scenario, start, seed, None, control, &mut pilot, &mut |moment| {
+        let Some(decision) = moment.decision else { return };
+        let command = &decision.command;
         let torque = command.torque.dot(&command.torque).sqrt();
         measured.effort += (command.thrust - hover).hypot(torque) * period;
         measured.peak_torque = measured.peak_torque.max(torque);
@@ -208,13 +202,13 @@ fn measure(scenario: &Scenario, trial: &Trial, seed: Seed) -> Measured {
         if moment.t_s >= release_s {
             measured.after_release = measured.after_release.max(distance);
         }
-    });
+    })?;
     measured.settling = settled.unwrap_or(scenario.duration_s);
     if outcome.dc_max_m >= LOST_M {
         measured.leaving_again = LOST_M;
         measured.after_release = LOST_M;
     }
-    measured
+    Some(measured)
 }
 
 fn line(trial: &'static str, quantity: Quantity, flown: &[[Measured; 3]]) -> Line {

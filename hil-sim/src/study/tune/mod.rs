@@ -17,12 +17,12 @@ pub use report::{table, trade};
 use controller::{EnvelopeParams, SetupError, Vector3, Vehicle};
 use rayon::prelude::*;
 use serde::Serialize;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::describe::input::Invalid;
 use crate::describe::scenario::{Law, Scenario};
-use crate::fly::flight::{JUDGED, fly};
-use crate::fly::pilot::Pilot;
+use crate::fly::flight::Control;
+use crate::fly::judge::{JUDGED, judge};
+use crate::fly::pilot::{Pilot, Telemetry};
 use crate::study::compare::{percentile, start};
 use crate::world::Seed;
 use crate::world::random::Purpose;
@@ -117,7 +117,7 @@ pub fn with_settings(table: &toml::Table, scale: f64, bandwidth: f64) -> toml::T
     table
 }
 
-/// Flies `runs` flights for each pair of a scale and a bandwidth (rad/s); `None` once `stop` is true. `table` are a scenario's keys.
+/// Flies `runs` flights for each pair of a scale and a bandwidth (rad/s); `None` if interrupted. `table` are a scenario's keys.
 ///
 /// # Errors
 /// [`TuneError`] for a scenario that is none, that does not follow a closed path, or that does not take one of the settings.
@@ -125,8 +125,7 @@ pub fn tune(
     table: &toml::Table,
     (scales, bandwidths): (&[f64], &[f64]),
     (runs, seed): (usize, u64),
-    stop: &AtomicBool,
-    progress: &(dyn Fn(f64) + Sync),
+    control: Control<'_>,
 ) -> Result<Option<Tuning>, TuneError> {
     let mut rows = Vec::new();
     for (&scale, &bandwidth) in scales.iter().flat_map(|scale| bandwidths.iter().map(move |o| (scale, o))) {
@@ -137,12 +136,7 @@ pub fn tune(
         Pilot::<f32>::new(&scenario.controller)?;
         let flights: Option<Vec<Flown>> = (0..runs as u64)
             .into_par_iter()
-            .map(|run| {
-                let flown = (!stop.load(Ordering::Relaxed))
-                    .then(|| fly_one(&scenario, &outline, envelope, Seed { batch: seed, run }));
-                progress(scenario.duration_s);
-                flown
-            })
+            .map(|run| fly_one(&scenario, &outline, envelope, Seed { batch: seed, run }, control))
             .collect();
         let Some(flights) = flights else { return Ok(None) };
         rows.push(row(scale, bandwidth, &flights));
@@ -189,7 +183,13 @@ struct Flown {
     thrust: f64,
 }
 
-fn fly_one(scenario: &Scenario, outline: &[[f64; 3]], [rod_limit, thrust_limit]: [f64; 2], seed: Seed) -> Flown {
+fn fly_one(
+    scenario: &Scenario,
+    outline: &[[f64; 3]],
+    [rod_limit, thrust_limit]: [f64; 2],
+    seed: Seed,
+    control: Control<'_>,
+) -> Option<Flown> {
     let mut random = seed.stream(Purpose::Draw);
     let beside = outline[(random.unit() * outline.len() as f64) as usize];
     let mut start = start(0.0, 0.0, &mut random);
@@ -198,20 +198,21 @@ fn fly_one(scenario: &Scenario, outline: &[[f64; 3]], [rod_limit, thrust_limit]:
     let (mut squares, mut count, mut torque_max) = (0.0, 0_u32, 0.0_f64);
     let (mut q3, mut q_b3) = (1.0_f64, 1.0_f64);
     let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it was set up before");
-    let outcome = fly(scenario, &start, seed, None, &mut pilot, &mut |moment| {
-        let torque = &moment.steering.command.torque;
+    let outcome = judge(scenario, start, seed, None, control, &mut pilot, &mut |moment| {
+        let Some(decision) = moment.decision else { return };
+        let torque = &decision.command.torque;
         let square = torque.dot(torque);
         torque_max = torque_max.max(square.sqrt());
         if moment.t_s >= judged_from_s {
             squares += square;
             count += 1;
         }
-        if let Some(margins) = &moment.steering.margins {
+        if let Some(Telemetry { margins, .. }) = &decision.telemetry {
             (q3, q_b3) = (q3.min(margins.q3), q_b3.min(margins.q_b3));
         }
-    });
+    })?;
     let [rod, thrust] = [q3, q_b3].map(|cosine| libm::acos(cosine.clamp(-1.0, 1.0)));
-    Flown {
+    Some(Flown {
         good: outcome.is_good() && rod <= rod_limit && thrust <= thrust_limit,
         dc_rms_m: outcome.dc_rms_m,
         dc_max_m: outcome.dc_max_m,
@@ -219,7 +220,7 @@ fn fly_one(scenario: &Scenario, outline: &[[f64; 3]], [rod_limit, thrust_limit]:
         torque_max,
         rod,
         thrust,
-    }
+    })
 }
 
 fn row(scale: f64, bandwidth: f64, flights: &[Flown]) -> Row {

@@ -1,0 +1,72 @@
+//! One flight of many: a pilot that takes over from a hover, judged by its distance from the path. Comparisons and campaigns fly with
+//! this; it keeps no log.
+
+use controller::State;
+
+use super::flight::{Control, End, Entry, LOST_M, Moment, Plan, fly};
+use super::pilot::Answers;
+use crate::describe::scenario::Scenario;
+use crate::world::Seed;
+
+/// d_C below which a flight is good, m.
+pub const GOOD_M: f64 = 0.25;
+
+/// Share of the flight, at its end, in which d_C is judged.
+pub const JUDGED: f64 = 0.25;
+
+/// d_C is taken about this often, s.
+const DISTANCE_PERIOD_S: f64 = 0.01;
+
+/// The result of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub end: End,
+    /// Largest d_C in the last quarter, m; [`LOST_M`] if it did not come so far.
+    pub dc_max_m: f64,
+    /// Root mean square of d_C in the last quarter, m; likewise.
+    pub dc_rms_m: f64,
+}
+
+impl Outcome {
+    /// Whether d_C stayed below 25 cm in the last quarter.
+    #[must_use]
+    pub fn is_good(&self) -> bool {
+        self.dc_max_m < GOOD_M
+    }
+}
+
+/// Flies `scenario` from `start` with everything random drawn from `seed`; `ground_p3` (m) is where a body that comes to it ends the
+/// flight. `watch` sees every period. `None` of a flight that was interrupted.
+pub fn judge(
+    scenario: &Scenario,
+    start: State<f64>,
+    seed: Seed,
+    ground_p3: Option<f64>,
+    control: Control<'_>,
+    pilot: &mut impl Answers,
+    watch: &mut impl FnMut(&Moment<'_>),
+) -> Option<Outcome> {
+    let distance_every = ((DISTANCE_PERIOD_S * scenario.controller.rate_hz) as u64).max(1);
+    let plan = Plan { start, seed, entry: Entry::Hover, ground_p3, distance_every, control };
+    let judged_from = ((1.0 - JUDGED) * scenario.steps() as f64) as u64;
+    let (mut largest, mut squares, mut count) = (0.0_f64, 0.0, 0_u32);
+    let end = fly(scenario, &plan, pilot, &mut |moment| {
+        watch(moment);
+        if moment.step >= judged_from
+            && let (Some(distance), Some(_)) = (moment.distance_m, moment.decision)
+        {
+            largest = largest.max(distance);
+            squares += distance * distance;
+            count += 1;
+        }
+    });
+    match end {
+        End::Interrupted => None,
+        End::Complete => {
+            let dc_rms_m = (squares / f64::from(count.max(1))).sqrt();
+            Some(Outcome { end, dc_max_m: largest, dc_rms_m })
+        }
+        _ => Some(Outcome { end, dc_max_m: LOST_M, dc_rms_m: LOST_M }),
+    }
+}

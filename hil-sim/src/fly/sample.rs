@@ -1,0 +1,16 @@
+//! What a log keeps of a control period.
+
+use super::pilot::Decision;
+
+/// One sample of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub t_s: f64,
+    /// The paper's 16 coordinates.
+    pub x: [f64; 16],
+    /// d_C, m.
+    pub distance_m: f64,
+    /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
+    pub decision: Option<Decision>,
+}
