@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use witness::plant::VehicleParameters;
 
-use super::{Common, Ended, fly};
+use super::{Common, Ended, load};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = "Examples:
@@ -71,7 +71,7 @@ fn subject(file: &Path) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Erro
             return path_alone(table).map_err(|error| format!("{}: {error}", file.display()).into());
         }
     }
-    let scenario = fly::load_one(file)?;
+    let scenario = load::one(file)?;
     match scenario.controller.law {
         Law::Follow { path, .. } => Ok((path, vehicle(&scenario.vehicle)?, scenario.limits)),
         Law::Track { .. } => Err(format!("{}: the law \"track\" has no path to check", file.display()).into()),

@@ -1,49 +1,15 @@
 //! `run` and `figures`: fly, print, report.
 
 use hil_sim::describe::reference::Reference;
-use hil_sim::describe::scenario::{self, Scenario};
+use hil_sim::describe::scenario::Scenario;
 use hil_sim::fly::batch::{self, Outcome};
 use hil_sim::fly::flight::Control;
 use hil_sim::fly::run::Arithmetic;
 use hil_sim::report;
-use std::error::Error;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::{Common, Ended, many};
-
-/// The built-in scenarios of these lists.
-pub fn built_in(lists: &[&[(&str, &str)]]) -> Result<Vec<Scenario>, Box<dyn Error>> {
-    let names = lists.iter().copied().flatten().map(|(name, _)| *name);
-    Ok(names.filter_map(scenario::builtin).collect::<Result<_, _>>()?)
-}
-
-/// Scenarios from files, or built in; each name once.
-pub fn load(files: &[PathBuf]) -> Result<Vec<Scenario>, Box<dyn Error>> {
-    let mut scenarios: Vec<Scenario> = Vec::new();
-    for file in files {
-        let scenario = load_one(file)?;
-        if scenarios.iter().any(|other| other.name == scenario.name) {
-            return Err(format!("{}: a second scenario named {}", file.display(), scenario.name).into());
-        }
-        scenarios.push(scenario);
-    }
-    Ok(scenarios)
-}
-
-/// A scenario from a file, or built in.
-pub fn load_one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
-    match std::fs::read_to_string(file) {
-        Ok(text) => Ok(Scenario::parse(&file.to_string_lossy(), &text)?),
-        Err(error) => {
-            match file.to_str().filter(|_| error.kind() == io::ErrorKind::NotFound).and_then(scenario::builtin) {
-                Some(scenario) => Ok(scenario?),
-                None => Err(format!("{}: {error}", file.display()).into()),
-            }
-        }
-    }
-}
 
 /// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
 pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) -> Ended {

@@ -8,7 +8,7 @@ use hil_sim::report;
 use std::fs;
 use std::io::{self, Write};
 
-use super::{Common, Ended, fly, many};
+use super::{Common, Ended, fly, load, many};
 
 pub const EXAMPLES: &str = "Examples:
   hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
@@ -23,7 +23,7 @@ pub const TARGET_EXAMPLES: &str = "Examples:
 /// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
 pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
     let scenarios =
-        if arguments.files.is_empty() { fly::built_in(&[FIGURES])? } else { fly::load(&arguments.files)? };
+        if arguments.files.is_empty() { load::built_in(&[FIGURES])? } else { load::all(&arguments.files)? };
     let stop = many::interrupt()?;
 
     let planned = scenarios.len();

@@ -7,6 +7,7 @@ mod eval;
 mod fit;
 mod fly;
 mod hil;
+mod load;
 mod many;
 mod policies;
 mod tune;
@@ -158,9 +159,9 @@ pub fn run() -> Ended {
     let Cli { command, common } = Cli::parse();
     match command {
         Some(Command::Run { files, trap }) => {
-            fly::fly(&common, fly::load(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 })
+            fly::fly(&common, load::all(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 })
         }
-        Some(Command::Figures) | None => fly::fly(&common, fly::built_in(&[FIGURES, CURVES])?, Arithmetic::F32),
+        Some(Command::Figures) | None => fly::fly(&common, load::built_in(&[FIGURES, CURVES])?, Arithmetic::F32),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),

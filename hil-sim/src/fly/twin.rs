@@ -11,6 +11,7 @@ use super::pilot::{Answers, Decision, Pilot};
 use crate::describe::scenario::ControllerSpec;
 
 /// What the pilot was asked.
+#[expect(clippy::large_enum_variant, reason = "nearly all are steps")]
 enum Asked {
     Start(State<f64>, [f64; 4]),
     TakeOver(State<f64>, Command<f64>),

@@ -3,10 +3,9 @@
 use super::lap::Node;
 use super::probe::Frame;
 use super::refusal::{Place, Refusal};
-use super::walk::node;
 use controller::Path;
 
-/// A jump of this part of the quantity's size is one.
+/// A change larger than this share of the quantity's size counts as a jump.
 const JUMP: f64 = 0.01;
 /// How far the stretch between two nodes is halved.
 const SMALLEST: f64 = 1e-6;
@@ -39,7 +38,7 @@ pub fn jump<P: Path<f64> + ?Sized, D: Copy, const N: usize>(
             let half = 0.5 * whole;
             let ahead = from.0.position() + from.0.tangent() * half;
             let Some(frame) = Frame::on_curve(path, ahead, half) else { break };
-            let between = node(path, &frame, from.0.arc + half)?;
+            let between = Node::at(path, &frame, from.0.arc + half)?;
             let middle = (between, evaluate(path, &between));
             if largest(&from, &middle) > largest(&middle, &to) { to = middle } else { from = middle }
         }

@@ -1,8 +1,8 @@
 //! A closed curve as walked once: its points by arc length, the nearest of them to any point, and its distance from itself.
 
-use super::probe::{Motion, length};
+use super::probe::{Frame, Motion, length, unit_speed};
 use super::refusal::{Place, Reason, Refusal};
-use controller::Vector3;
+use controller::{Path, Vector3};
 
 /// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
 const SAME_POINT: f64 = 1e-6;
@@ -18,6 +18,16 @@ pub struct Node {
 }
 
 impl Node {
+    /// The point of `frame`, with the curve's derivatives there.
+    ///
+    /// # Errors
+    /// [`Refusal`] if it has none.
+    pub(super) fn at<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Self, Refusal> {
+        let place = Place { position: frame.position, arc };
+        let motion = unit_speed(path, frame).ok_or_else(|| Reason::NotSmooth.at(place))?;
+        Ok(Self { arc, motion, regularity: frame.regularity() })
+    }
+
     /// The point, in N, m.
     #[must_use]
     pub fn position(&self) -> Vector3<f64> {

@@ -4,6 +4,7 @@
 //! flight: with the outputs and all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from
 //! the curve and v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
+mod demand;
 mod jumps;
 pub mod lap;
 mod limits;
@@ -14,6 +15,7 @@ mod report;
 pub mod steady;
 pub mod walk;
 
+pub use demand::{Demand, Range};
 pub use lap::{Approach, Lap, Nearest, Node};
 pub use limits::Limits;
 pub use refusal::{Place, Reason, Refusal};
@@ -21,60 +23,6 @@ pub use steady::Steady;
 
 use controller::{Path, Vector3, Vehicle};
 use probe::{Frame, Motion, at_speed, length, prescribed_speed, yaw};
-
-/// A quantity's least and largest value over the lap, each with its place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Range {
-    /// Least.
-    pub min: f64,
-    /// Where.
-    pub min_at: Place,
-    /// Largest.
-    pub max: f64,
-    /// Where.
-    pub max_at: Place,
-}
-
-impl Range {
-    fn new(value: f64, place: Place) -> Self {
-        Self { min: value, min_at: place, max: value, max_at: place }
-    }
-    fn take(&mut self, value: f64, place: Place) {
-        if value < self.min {
-            (self.min, self.min_at) = (value, place);
-        }
-        if value > self.max {
-            (self.max, self.max_at) = (value, place);
-        }
-    }
-}
-
-/// What a lap asks of the vehicle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
-    /// Speed of the payload, m/s.
-    pub speed: Range,
-    /// T, N.
-    pub thrust: Range,
-    /// Angle of the rod from straight down, rad.
-    pub rod_angle: Range,
-    /// Angle of b3 from straight down, rad.
-    pub tilt: Range,
-    /// |ω|, rad/s.
-    pub body_rate: Range,
-    /// Largest component of τ, N·m.
-    pub torque: Range,
-    /// Tension as a part of the payload's weight, −λ/g; 0 in free fall.
-    pub tension: Range,
-    /// q·e3, 0 with the rod horizontal.
-    pub q3: Range,
-    /// q·b3, 0 with the thrust across the rod.
-    pub q_b3: Range,
-    /// κ = T/(m_Q L), 1/s².
-    pub kappa: Range,
-    /// cos²φ, 0 where yaw is not defined.
-    pub cos_phi_squared: Range,
-}
 
 /// A limit that the path at its speed does not keep to.
 #[derive(Clone, Debug, PartialEq)]
@@ -253,72 +201,4 @@ fn fastest<P: Path<f64> + ?Sized>(
         }
     }
     Some(Fastest { speed: good, then: Some(then) })
-}
-
-impl Demand {
-    fn of(vehicle: &Vehicle<f64>, steady: &Steady, place: Place) -> Self {
-        let range = |value| Range::new(value, place);
-        let values = Self::values(vehicle, steady);
-        let [speed, thrust, rod_angle, tilt, body_rate, torque, tension, q3, q_b3, kappa, cos_phi_squared] =
-            values.map(range);
-        Self { speed, thrust, rod_angle, tilt, body_rate, torque, tension, q3, q_b3, kappa, cos_phi_squared }
-    }
-
-    fn take(&mut self, vehicle: &Vehicle<f64>, steady: &Steady, place: Place) {
-        let ranges = [
-            &mut self.speed,
-            &mut self.thrust,
-            &mut self.rod_angle,
-            &mut self.tilt,
-            &mut self.body_rate,
-            &mut self.torque,
-            &mut self.tension,
-            &mut self.q3,
-            &mut self.q_b3,
-            &mut self.kappa,
-            &mut self.cos_phi_squared,
-        ];
-        for (range, value) in ranges.into_iter().zip(Self::values(vehicle, steady)) {
-            range.take(value, place);
-        }
-    }
-
-    /// In the order of the fields.
-    fn values(vehicle: &Vehicle<f64>, steady: &Steady) -> [f64; 11] {
-        [
-            length(&steady.state.velocity),
-            steady.command.thrust,
-            steady.rod_angle(),
-            steady.tilt(),
-            length(&steady.state.body_rate),
-            steady.command.torque.iter().fold(0.0, |largest: f64, torque| largest.max(torque.abs())),
-            -steady.lambda / vehicle.params().gravity,
-            steady.state.rod.z,
-            steady.b3_rod,
-            steady.kappa,
-            steady.cos_phi_squared,
-        ]
-    }
-
-    /// The limits that are not kept.
-    #[must_use]
-    pub fn excesses(&self, limits: &Limits) -> Vec<Excess> {
-        let upper = [
-            ("thrust", &self.thrust, limits.thrust[1]),
-            ("rod angle", &self.rod_angle, limits.rod_angle),
-            ("tilt", &self.tilt, limits.tilt),
-            ("body rate", &self.body_rate, limits.body_rate),
-            ("torque", &self.torque, limits.torque),
-        ];
-        let lower = [("thrust", &self.thrust, limits.thrust[0]), ("tension", &self.tension, limits.tension)];
-        let above = upper
-            .into_iter()
-            .filter(|(_, range, limit)| range.max > *limit)
-            .map(|(quantity, range, limit)| Excess { quantity, value: range.max, limit, place: range.max_at });
-        let below = lower
-            .into_iter()
-            .filter(|(_, range, limit)| range.min < *limit)
-            .map(|(quantity, range, limit)| Excess { quantity, value: range.min, limit, place: range.min_at });
-        above.chain(below).collect()
-    }
 }

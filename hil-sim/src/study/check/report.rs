@@ -1,6 +1,7 @@
 //! The answer as text.
 
-use super::{Excess, Fastest, Range, Report};
+use super::demand::Line;
+use super::{Excess, Fastest, Report};
 use std::fmt;
 
 impl fmt::Display for Excess {
@@ -31,21 +32,11 @@ impl fmt::Display for Report {
             )?,
             None => writeln!(f, "  closest branches  none")?,
         }
-        line(f, "|∇h1 × ∇h2|", &self.regularity, 1.0, "")?;
+        line(f, &Line { name: "|∇h1 × ∇h2|", range: &self.regularity, unit: ("", 1.0) })?;
         writeln!(f, "lap at the given speed: {:.3} s", self.lap_time)?;
-        let degrees = 1.0_f64.to_degrees();
-        let demand = &self.demand;
-        line(f, "speed", &demand.speed, 1.0, "m/s")?;
-        line(f, "thrust", &demand.thrust, 1.0, "N")?;
-        line(f, "rod angle", &demand.rod_angle, degrees, "°")?;
-        line(f, "tilt", &demand.tilt, degrees, "°")?;
-        line(f, "body rate", &demand.body_rate, 1.0, "rad/s")?;
-        line(f, "torque", &demand.torque, 1.0, "N·m")?;
-        line(f, "tension/weight", &demand.tension, 1.0, "")?;
-        line(f, "q·e3", &demand.q3, 1.0, "")?;
-        line(f, "q·b3", &demand.q_b3, 1.0, "")?;
-        line(f, "κ", &demand.kappa, 1.0, "1/s²")?;
-        line(f, "cos²φ", &demand.cos_phi_squared, 1.0, "")?;
+        for quantity in self.demand.lines() {
+            line(f, &quantity)?;
+        }
         match &self.fastest {
             Some(Fastest { speed, then: Some(excess) }) => {
                 writeln!(f, "highest constant speed within the limits: {speed:.3} m/s; beyond it {excess}")?;
@@ -62,7 +53,7 @@ impl fmt::Display for Report {
     }
 }
 
-fn line(f: &mut fmt::Formatter<'_>, name: &str, range: &Range, unit_per_si: f64, unit: &str) -> fmt::Result {
-    let (min, max) = (range.min * unit_per_si, range.max * unit_per_si);
+fn line(f: &mut fmt::Formatter<'_>, Line { name, range, unit: (unit, per_si) }: &Line<'_>) -> fmt::Result {
+    let (min, max) = (range.min * per_si, range.max * per_si);
     writeln!(f, "  {name:<17} {min:.4} to {max:.4} {unit} (most at {:.2} m along)", range.max_at.arc)
 }

@@ -2,7 +2,7 @@
 
 use super::jumps::{Point, jump};
 use super::lap::{Lap, Node};
-use super::probe::{Frame, Motion, length, unit_speed};
+use super::probe::{Frame, Motion, length};
 use super::refusal::{Place, Reason, Refusal};
 use controller::{Path, Vector3};
 
@@ -29,7 +29,7 @@ const IRREGULAR: f64 = 1e-6;
 /// # Errors
 /// [`Refusal`] with the place where it is not a closed, smooth, regular curve.
 pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Refusal> {
-    let mut nodes = vec![node(path, &start, 0.0)?];
+    let mut nodes = vec![Node::at(path, &start, 0.0)?];
     let mut frame = start;
     let mut arc = 0.0;
     let mut extent = FIRST_STEP / STRETCH;
@@ -58,7 +58,7 @@ pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Re
         if length(&frame.position) > FURTHEST {
             return Err(Reason::Open.at(Place { position: frame.position, arc }));
         }
-        nodes.push(node(path, &frame, arc)?);
+        nodes.push(Node::at(path, &frame, arc)?);
         step = if turn < TURN / 2.0 { taken * 1.5 } else { taken };
     }
     Err(Reason::Endless.at(Place { position: frame.position, arc }))
@@ -94,13 +94,6 @@ fn advance<P: Path<f64> + ?Sized>(
             return Err(reason.at(here));
         }
     }
-}
-
-/// A point of the lap with the curve's derivatives there.
-pub(super) fn node<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Node, Refusal> {
-    let place = Place { position: frame.position, arc };
-    let motion = unit_speed(path, frame).ok_or_else(|| Reason::NotSmooth.at(place))?;
-    Ok(Node { arc, motion, regularity: frame.regularity() })
 }
 
 /// Looks between the nodes for a point where |∇h1 × ∇h2| is zero: the surfaces touch, or the curve crosses itself.
