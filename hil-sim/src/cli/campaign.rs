@@ -1,15 +1,16 @@
 //! `campaign` and `merge`: thousands of drawn flights.
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use hil_sim::fly::flight::Control;
+use hil_sim::report::log;
 use hil_sim::study::campaign::{self, Campaign, Identity, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use super::{Common, Ended, many, many::Many};
+use super::{Common, Ended, Logs, many, many::Many};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = "Examples:
@@ -17,6 +18,7 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim campaign my.toml --runs 1000 --seed 7 --jobs 2 --out results
   hil-sim campaign my.toml --out results         again: goes on where it was interrupted
   hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
+  hil-sim campaign my.toml --table csv,parquet --out results
   hil-sim campaign my.toml --shard 1/4 --out part1    a quarter, for a cluster; see `hil-sim merge`";
 
 /// Each example can be pasted into a shell.
@@ -43,6 +45,27 @@ pub struct CampaignArguments {
     /// Fly the i-th of n parts only.
     #[arg(long, value_name = "i/n", value_parser = shard)]
     shard: Option<Shard>,
+    #[command(flatten)]
+    tables: Tables,
+    #[command(flatten)]
+    logs: Logs,
+}
+
+/// The formats of the table.
+#[derive(Args)]
+pub struct Tables {
+    /// Formats of the table: runs.csv is always kept, since it is where an interrupted campaign goes on.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv", value_name = "FORMAT,…")]
+    table: Vec<TableFormat>,
+}
+
+/// A format of the table.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TableFormat {
+    /// runs.csv.
+    Csv,
+    /// runs.parquet.
+    Parquet,
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
@@ -65,7 +88,7 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     if let Some(run) = arguments.replay {
-        return replay(common, &campaign, Seed { batch: arguments.many.seed, run });
+        return replay(common, &campaign, Seed { batch: arguments.many.seed, run }, &arguments.logs);
     }
 
     let stop = many::interrupt()?;
@@ -86,7 +109,7 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
         eprintln!("hil-sim: interrupted: {} of {planned} flights are kept; the same command goes on", rows.len());
         return Ok(many::interrupted());
     }
-    report(common, &campaign, identity.seed, &rows)?;
+    report(common, &campaign, identity.seed, &rows, &arguments.tables)?;
     if !common.quiet {
         let wall_s = started.elapsed().as_secs_f64();
         writeln!(
@@ -99,16 +122,26 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
 }
 
 /// Puts the shards of a campaign together.
-pub fn merge(common: &Common, folders: &[PathBuf]) -> Ended {
+pub fn merge(common: &Common, folders: &[PathBuf], tables: &Tables) -> Ended {
     let (identity, rows) = campaign::merge(folders)?;
     let (mut store, found) = campaign::Store::open(common.folder(), &identity)?;
     store.append(rows.get(found.len()..).unwrap_or_default())?;
     let campaign = Campaign::parse(&identity.campaign)?;
-    report(common, &campaign, identity.seed, &rows)?;
+    report(common, &campaign, identity.seed, &rows, tables)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn report(common: &Common, campaign: &Campaign, seed: u64, rows: &[Row]) -> Result<(), Box<dyn std::error::Error>> {
+fn report(
+    common: &Common,
+    campaign: &Campaign,
+    seed: u64,
+    rows: &[Row],
+    tables: &Tables,
+) -> Result<(), Box<dyn std::error::Error>> {
+    if tables.table.contains(&TableFormat::Parquet) {
+        let path = common.folder().join("runs.parquet");
+        std::fs::write(&path, campaign::parquet(rows)?).map_err(|error| format!("{}: {error}", path.display()))?;
+    }
     let summary = campaign::summarize(seed, rows);
     let duration_s = campaign.draw(Seed { batch: seed, run: 0 })?.scenario.duration_s;
     let page = campaign::write(common.folder(), &campaign.title, duration_s, &summary, rows)?;
@@ -120,17 +153,16 @@ fn report(common: &Common, campaign: &Campaign, seed: u64, rows: &[Row]) -> Resu
     Ok(())
 }
 
-fn replay(common: &Common, campaign: &Campaign, seed: Seed) -> Ended {
+fn replay(common: &Common, campaign: &Campaign, seed: Seed, logs: &Logs) -> Ended {
     let stop = many::interrupt()?;
     let control = Control { stop: &stop, progress: &|_| {} };
-    let Some((row, log)) = campaign::replay(campaign, seed, control)? else { return Ok(many::nothing_reported()) };
-    let folder: &Path = common.folder();
+    let Some((row, table)) = campaign::replay(campaign, seed, control)? else { return Ok(many::nothing_reported()) };
+    let folder = common.folder();
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let path = folder.join(format!("replay-{}.csv", seed.run));
-    std::fs::write(&path, log).map_err(|error| format!("{}: {error}", path.display()))?;
+    log::write(folder, &table, &logs.log)?;
     if !common.quiet {
         let mut out = io::stdout().lock();
-        writeln!(out, "{row:#?}\nLog: {}", path.display())?;
+        writeln!(out, "{row:#?}\nLogs: {}.*", folder.join(&table.name).display())?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -9,10 +9,10 @@ use hil_sim::report;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use super::{Common, Ended, many};
+use super::{Common, Ended, Logs, many};
 
 /// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
-pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) -> Ended {
+pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic, logs: &Logs) -> Ended {
     let stop = many::interrupt()?;
 
     super::check::warn(&scenarios);
@@ -23,7 +23,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic) ->
     bar.finish_and_clear();
 
     let reference = Reference::builtin();
-    let page = report::write(common.folder(), &outcomes, &reference)?;
+    let page = report::write(common.folder(), &outcomes, &reference, &logs.log)?;
     if !common.quiet {
         let slowest = outcomes.iter().map(|outcome| outcome.flight.times_real_time).fold(f64::INFINITY, f64::min);
         let mut out = io::stdout().lock();

@@ -8,7 +8,7 @@ use hil_sim::report;
 use std::fs;
 use std::io::{self, Write};
 
-use super::{Common, Ended, fly, load, many};
+use super::{Common, Ended, Logs, fly, load, many};
 
 pub const EXAMPLES: &str = "Examples:
   hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
@@ -21,7 +21,7 @@ pub const TARGET_EXAMPLES: &str = "Examples:
   hil-sim hil fig3a --connect tcp:127.0.0.1:5760       in another terminal";
 
 /// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
-pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
+pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
     let scenarios =
         if arguments.files.is_empty() { load::built_in(&[FIGURES])? } else { load::all(&arguments.files)? };
     let stop = many::interrupt()?;
@@ -33,7 +33,7 @@ pub fn fly(common: &Common, arguments: &Arguments) -> Ended {
     let Flown { outcomes, links, failure } = flown;
 
     let reference = Reference::builtin();
-    let page = report::write(common.folder(), &outcomes, &reference)?;
+    let page = report::write(common.folder(), &outcomes, &reference, &logs.log)?;
     fs::write(common.folder().join("hil.json"), serde_json::to_vec_pretty(&links)?)?;
     if !common.quiet {
         let mut out = io::stdout().lock();

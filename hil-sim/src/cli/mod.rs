@@ -15,6 +15,7 @@ mod tune;
 use clap::{Parser, Subcommand};
 use hil_sim::describe::scenario::{CURVES, FIGURES};
 use hil_sim::fly::run::Arithmetic;
+use hil_sim::report::log::Format;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -63,6 +64,14 @@ impl Common {
     }
 }
 
+/// The formats of flights' logs.
+#[derive(clap::Args)]
+struct Logs {
+    /// Formats of the flights' logs.
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "csv", value_name = "FORMAT,…")]
+    log: Vec<Format>,
+}
+
 #[derive(Subcommand)]
 enum Command {
     /// Fly scenario files and report on them.
@@ -73,6 +82,7 @@ enum Command {
   hil-sim run my-flight.toml
   hil-sim run a.toml b.toml --out results
   hil-sim run fig3a fig3b            built-in scenarios by name
+  hil-sim run fig3a --log csv,ulog,mcap    logs for Flight Review, PlotJuggler, Foxglove
   hil-sim run my-flight.toml --trap  stop at the first invalid operation")]
     Run {
         /// Scenario files, or names of built-in scenarios.
@@ -82,12 +92,14 @@ enum Command {
         /// which and where; RUST_BACKTRACE=1 says how it came to it.
         #[arg(long)]
         trap: bool,
+        #[command(flatten)]
+        logs: Logs,
     },
     /// Fly every figure of the paper and compare with the reference numbers.
     #[command(after_help = "Examples:
   hil-sim figures                    report in out/
   hil-sim figures --quiet --out results")]
-    Figures,
+    Figures(Logs),
     /// Evaluate the law for JSON objects, one a line, on standard input.
     ///
     /// Writes one JSON object a line, in order. A bad line gives {"error": "..."} in its place and a non-zero exit status at
@@ -118,6 +130,8 @@ enum Command {
         /// Folders of all shards.
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
+        #[command(flatten)]
+        tables: campaign::Tables,
     },
     /// Compare the law as published, with integral action, with disturbance observers, and trajectory tracking with them.
     ///
@@ -144,7 +158,12 @@ enum Command {
     /// In lockstep, each state is one control step of the target, and the flight is the same, bit by bit, as in this program. Same
     /// tables and report as `run`, and the link's and the target's numbers beside them (hil.json).
     #[command(after_help = hil::EXAMPLES)]
-    Hil(hil_sim::hil::Arguments),
+    Hil {
+        #[command(flatten)]
+        arguments: hil_sim::hil::Arguments,
+        #[command(flatten)]
+        logs: Logs,
+    },
     /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to connect to.
     #[command(after_help = hil::TARGET_EXAMPLES)]
     Target {
@@ -158,19 +177,24 @@ enum Command {
 pub fn run() -> Ended {
     let Cli { command, common } = Cli::parse();
     match command {
-        Some(Command::Run { files, trap }) => {
-            fly::fly(&common, load::all(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 })
+        Some(Command::Run { files, trap, logs }) => {
+            fly::fly(&common, load::all(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 }, &logs)
         }
-        Some(Command::Figures) | None => fly::fly(&common, load::built_in(&[FIGURES, CURVES])?, Arithmetic::F32),
+        Some(Command::Figures(logs)) => figures(&common, &logs),
+        None => figures(&common, &Logs { log: vec![Format::Csv] }),
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),
-        Some(Command::Merge { folders }) => campaign::merge(&common, &folders),
+        Some(Command::Merge { folders, tables }) => campaign::merge(&common, &folders, &tables),
         Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
         Some(Command::Policies(arguments)) => policies::policies(&common, &arguments),
         Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
-        Some(Command::Hil(arguments)) => hil::fly(&common, &arguments),
+        Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
         Some(Command::Target { listen }) => hil::target(&common, &listen),
     }
+}
+
+fn figures(common: &Common, logs: &Logs) -> Ended {
+    fly::fly(common, load::built_in(&[FIGURES, CURVES])?, Arithmetic::F32, logs)
 }

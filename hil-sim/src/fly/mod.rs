@@ -5,6 +5,7 @@
 
 pub mod batch;
 pub mod deviation;
+pub mod fault;
 pub mod flight;
 pub mod judge;
 pub mod metrics;

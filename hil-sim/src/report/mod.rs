@@ -2,7 +2,7 @@
 
 mod figures;
 mod html;
-mod log;
+pub mod log;
 pub(crate) mod plot;
 mod summary;
 mod table;
@@ -47,25 +47,30 @@ pub enum ReportError {
         message: String,
     },
     /// A log could not be encoded.
-    #[error("log of {name}: {error}")]
+    #[error("log of {name}: {message}")]
     Log {
         /// The scenario.
         name: String,
         /// Why.
-        error: csv::Error,
+        message: String,
     },
 }
 
-/// Writes all files of a report into `folder`, each complete or not at all, and returns the page's path.
+/// Writes all files of a report into `folder`, logs in these formats, each complete or not at all, and returns the page's path.
 ///
 /// # Errors
 /// [`ReportError`] names the file or figure.
-pub fn write(folder: &Path, outcomes: &[Outcome], reference: &Reference) -> Result<PathBuf, ReportError> {
+pub fn write(
+    folder: &Path,
+    outcomes: &[Outcome],
+    reference: &Reference,
+    formats: &[log::Format],
+) -> Result<PathBuf, ReportError> {
     std::fs::create_dir_all(folder).map_err(|error| ReportError::File { path: folder.to_owned(), error })?;
     for outcome in outcomes {
-        let name = &outcome.scenario.name;
-        let text = log::csv(outcome).map_err(|error| ReportError::Log { name: name.clone(), error })?;
-        write_file(&folder.join(format!("{name}.csv")), &text)?;
+        let scenario = &outcome.scenario;
+        let table = log::Table::new(&scenario.name, &scenario.title, &log::Record::of_flight(outcome));
+        log::write(folder, &table, formats)?;
     }
     let figures = figures::draw(outcomes)?;
     for figure in &figures {

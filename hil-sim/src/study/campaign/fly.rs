@@ -1,8 +1,6 @@
 //! A campaign's flight: the supervised law, and the row of the table it leaves.
 
-use controller::{
-    ApproachLimits, Command, EnvelopeParams, Fault, Follower, Mode, Policy, Request, SetupError, State,
-};
+use controller::{ApproachLimits, Command, EnvelopeParams, Follower, Mode, Policy, Request, SetupError, State};
 use controller::{Supervisor, Vehicle};
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +8,7 @@ use super::file::{ApproachFields, Campaign, Drawn};
 use crate::describe::input::Invalid;
 use crate::describe::route::Route;
 use crate::describe::scenario::{ControllerSpec, Law};
+use crate::fly::fault::describe;
 use crate::fly::flight::{Control, End, LOST_M, Moment};
 use crate::fly::judge::{GOOD_M, Outcome, judge};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry, padded};
@@ -255,18 +254,6 @@ pub fn fly_run(
     over_time.resize(INSTANTS, LOST_M);
     row.dc_over_time_m = over_time.iter().map(|distance| format!("{distance:.4}")).collect::<Vec<_>>().join(";");
     Ok(Some(Row { mode: format!("{mode:?}").to_lowercase(), dc_max_m, dc_rms_m, ..row }))
-}
-
-/// A fault in a word or two.
-#[must_use]
-pub fn describe(fault: Fault) -> String {
-    match fault {
-        Fault::State(channel) => format!("state: {channel:?}").to_lowercase(),
-        Fault::Margin(margin) => format!("margin: {margin:?}"),
-        Fault::NotFinite => "answer not finite".to_owned(),
-        Fault::NoPath => "no path".to_owned(),
-        Fault::PayloadLost => "payload lost".to_owned(),
-    }
 }
 
 impl Row {

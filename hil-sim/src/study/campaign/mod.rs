@@ -8,14 +8,16 @@ mod draw;
 mod file;
 mod fly;
 mod page;
+mod parquet;
 mod replay;
 mod store;
 mod summary;
 
 pub use draw::{Distribution, Start, StartFields};
 pub use file::{ApproachFields, Campaign, Drawn};
-pub use fly::{Row, Supervised, Verdict, describe, fly_run};
+pub use fly::{Row, Supervised, Verdict, fly_run};
 pub use page::write;
+pub use parquet::encode as parquet;
 pub use replay::replay;
 pub use store::{Identity, Shard, Store, StoreError, merge};
 pub use summary::{Summary, summarize};

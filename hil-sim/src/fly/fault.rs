@@ -1,0 +1,15 @@
+//! Faults in words.
+
+use controller::Fault;
+
+/// A fault in a word or two.
+#[must_use]
+pub fn describe(fault: Fault) -> String {
+    match fault {
+        Fault::State(channel) => format!("state: {channel:?}").to_lowercase(),
+        Fault::Margin(margin) => format!("margin: {margin:?}"),
+        Fault::NotFinite => "answer not finite".to_owned(),
+        Fault::NoPath => "no path".to_owned(),
+        Fault::PayloadLost => "payload lost".to_owned(),
+    }
+}

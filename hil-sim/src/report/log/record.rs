@@ -1,0 +1,75 @@
+//! What is logged of one instant. The only place that knows how a flight keeps its samples.
+
+use controller::{State, Vector3};
+
+use crate::describe::scenario::{Law, Scenario};
+use crate::fly::batch::Outcome;
+use crate::fly::flight::Moment;
+use crate::fly::pilot::{Decision, Telemetry};
+
+/// One logged instant of a flight.
+#[derive(Clone, Copy, Debug)]
+pub struct Record {
+    /// s.
+    pub t_s: f64,
+    /// As it is, not as it is read.
+    pub state: State<f64>,
+    /// The UAV's position in N, m.
+    pub uav_position: Vector3<f64>,
+    /// The UAV's velocity in N, m/s.
+    pub uav_velocity: Vector3<f64>,
+    /// d_C, m, where it was taken.
+    pub distance_m: Option<f64>,
+    /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
+    pub decision: Option<Decision>,
+    /// Errors of speed (m/s) and yaw (rad), of a law that follows a path.
+    pub errors: Option<[f64; 2]>,
+}
+
+impl Record {
+    /// A sample of a flight of `scenario`.
+    #[must_use]
+    pub fn new(
+        scenario: &Scenario,
+        t_s: f64,
+        state: State<f64>,
+        distance_m: Option<f64>,
+        decision: Option<Decision>,
+    ) -> Self {
+        let follows = matches!(scenario.controller.law, Law::Follow { .. });
+        // ξ holds h1 … h1⁽⁵⁾, h2 … h2⁽⁵⁾, h3 …, h4.
+        let errors = |Telemetry { xi, .. }: Telemetry| [xi[12], xi[17]];
+        let length = scenario.vehicle.rod_length;
+        Self {
+            t_s,
+            uav_position: state.position - state.rod * length,
+            uav_velocity: state.velocity - state.rod_rate * length,
+            state,
+            distance_m,
+            errors: decision.and_then(|decision| decision.telemetry).filter(|_| follows).map(errors),
+            decision,
+        }
+    }
+
+    /// The log of a flight.
+    #[must_use]
+    pub fn of_flight(Outcome { scenario, flight, .. }: &Outcome) -> Vec<Self> {
+        let samples = flight.log.iter();
+        let record = samples.map(|sample| {
+            Self::new(scenario, sample.t_s, State::from_paper(&sample.x), Some(sample.distance_m), sample.decision)
+        });
+        record.collect()
+    }
+
+    /// What a watcher of a flight of `scenario` sees.
+    #[must_use]
+    pub fn of_moment(scenario: &Scenario, moment: &Moment<'_>) -> Self {
+        Self::new(scenario, moment.t_s, *moment.state, moment.distance_m, moment.decision.copied())
+    }
+
+    /// Where the law's answer came from.
+    #[must_use]
+    pub fn law(&self) -> Option<Telemetry> {
+        self.decision.and_then(|decision| decision.telemetry)
+    }
+}
