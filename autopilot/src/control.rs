@@ -18,9 +18,10 @@ use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
-use crate::law::{Law, SetupRefused, Step};
-use crate::parameters::{Parameter, Parameters};
+use rig::{Output, Rig, SetupError, parameter};
+
 use crate::report;
+use crate::settings::{Setting, Settings};
 
 /// What drives the control step, and whether the rotors do as they are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,16 +78,12 @@ pub struct Answer {
 /// The flight program's control side.
 #[derive(Clone, Debug)]
 pub struct Autopilot {
-    parameters: Parameters,
+    settings: Settings,
     boot: Boot,
     counters: Counters,
-    /// Of the last step.
-    mode: Mode,
-    fault: Option<Fault>,
     /// While armed.
-    law: Option<Law>,
+    rig: Option<Rig<f32>>,
     request: Request,
-    applied: Command<f32>,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
     /// The last control period had no state.
@@ -102,14 +99,11 @@ impl Autopilot {
     #[must_use]
     pub fn new(boot: Boot) -> Self {
         Self {
-            parameters: Parameters::default(),
+            settings: Settings::default(),
             boot,
             counters: Counters::default(),
-            mode: Mode::Off,
-            fault: None,
-            law: None,
+            rig: None,
             request: Request::Idle,
-            applied: Command::zero(),
             inbox: None,
             blind: false,
             newest_usec: None,
@@ -121,21 +115,21 @@ impl Autopilot {
 
     /// The parameters.
     #[must_use]
-    pub fn parameters(&self) -> &Parameters {
-        &self.parameters
+    pub fn settings(&self) -> &Settings {
+        &self.settings
     }
 
     /// The parameters, to be changed; `None` when armed.
-    pub fn parameters_mut(&mut self) -> Option<&mut Parameters> {
-        if self.is_armed() { None } else { Some(&mut self.parameters) }
+    pub fn settings_mut(&mut self) -> Option<&mut Settings> {
+        if self.is_armed() { None } else { Some(&mut self.settings) }
     }
 
     /// What drives the control step.
     #[must_use]
     pub fn drive(&self) -> Drive {
-        match self.parameters.get(Parameter::Simulate) {
-            mode if mode >= 1.5 => Drive::RealTime,
-            mode if mode >= 0.5 => Drive::Lockstep,
+        match self.settings.get(Setting::DRIVE) as u8 {
+            1 => Drive::Lockstep,
+            2 => Drive::RealTime,
             _ => Drive::Flight,
         }
     }
@@ -143,25 +137,25 @@ impl Autopilot {
     /// The control period, s.
     #[must_use]
     pub fn period_s(&self) -> f32 {
-        self.parameters.get(Parameter::Period)
+        self.settings.rig().get(parameter!("CTL_PERIOD"))
     }
 
     /// What the vehicle is doing.
     #[must_use]
     pub fn mode(&self) -> Mode {
-        self.mode
+        self.rig.as_ref().map_or(Mode::Off, |rig| rig.output().mode)
     }
 
     /// Why it is not doing what was asked for: the last fault since something else was.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
-        self.fault
+        self.rig.as_ref().and_then(|rig| rig.output().fault)
     }
 
     /// Whether rotors may turn.
     #[must_use]
     pub fn is_armed(&self) -> bool {
-        self.law.is_some()
+        self.rig.is_some()
     }
 
     /// Whether the last control period had no state.
@@ -172,7 +166,7 @@ impl Autopilot {
 
     /// Asks for something, now or for after arming. `false` if the law does not know it: tracking only follows.
     pub fn request(&mut self, request: Request) -> bool {
-        let known = request == Request::Follow || !self.parameters.is_on(Parameter::Law);
+        let known = request == Request::Follow || !self.settings.rig().is_on(parameter!("CTL_LAW"));
         if known {
             self.request = request;
         }
@@ -195,9 +189,9 @@ impl Autopilot {
     ///
     /// # Errors
     /// The parameters make no law; it stays disarmed.
-    pub fn arm(&mut self) -> Result<(), SetupRefused> {
+    pub fn arm(&mut self) -> Result<(), SetupError<f32>> {
         if !self.is_armed() {
-            self.law = Some(Law::new(&self.parameters)?);
+            self.rig = Some(Rig::new(self.settings.rig())?);
             self.inbox = None;
             self.newest_usec = None;
             self.last = None;
@@ -208,9 +202,7 @@ impl Autopilot {
 
     /// Rotors off. What was asked for is forgotten.
     pub fn disarm(&mut self) {
-        self.law = None;
-        self.mode = Mode::Off;
-        self.fault = None;
+        self.rig = None;
         self.request = Request::Idle;
         self.last = None;
     }
@@ -296,7 +288,7 @@ impl Autopilot {
             time_usec: frame.map_or(0, |frame| frame.time_usec),
             sequence: frame.map_or(0, |frame| frame.sequence),
             faults,
-            mode: report::mode(self.mode),
+            mode: report::mode(self.mode()),
             ..LOAD_COMMAND_DATA::DEFAULT
         };
         Answer { command, telemetry: None, outputs: [0.0; 4] }
@@ -316,92 +308,88 @@ impl Autopilot {
         let mut faults = self.standing_faults();
         self.overrun = false;
         self.blind = frame.is_none();
-        let Some(law) = &mut self.law else { return self.nothing(frame, faults) };
-        let state = match frame {
-            Some(frame) if frame.zeta.iter().all(|z| z.is_finite()) => link::state_of(frame),
-            _ => State::at_rest(Vector3::repeat(f32::NAN)),
-        };
-        let is_good = state.check().is_ok();
+        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
+        let state = frame.filter(|frame| may_start(frame)).map(link::state_of);
+        let good = state.as_ref().filter(|state| state.check().is_ok());
         match frame {
             None => {
                 self.counters.missed = self.counters.missed.wrapping_add(1);
                 faults |= LoadFault::LOAD_FAULT_NO_STATE;
             }
-            Some(_) if !is_good => {
+            Some(_) if good.is_none() => {
                 self.counters.refused = self.counters.refused.wrapping_add(1);
                 faults |= LoadFault::LOAD_FAULT_BAD_STATE;
             }
-            Some(frame) => {
-                self.counters.steps = self.counters.steps.wrapping_add(1);
-                if frame.action == LoadAction::LOAD_ACTION_START {
-                    self.request = Request::Follow;
-                }
-                begin(law, frame, &state, self.request, &self.applied);
-            }
+            Some(_) => self.counters.steps = self.counters.steps.wrapping_add(1),
         }
-        let integral = law.integral();
-        let was_flying = is_flying(law.mode());
-        let step = law.step(&state, self.request, frame.map_or(0.0, |frame| frame.reference_phase));
-        let has_fallen_back = was_flying && self.request == Request::Follow && !is_flying(step.mode);
-        self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
-        (self.mode, self.fault, self.applied) = (step.mode, step.fault, step.command);
-
-        let rotor = law.actuators().duties(&step.command);
-        let mut answer = self.answer(frame, faults, &step, rotor);
-        if is_good {
-            let is_asked_for = frame.is_some_and(|frame| frame.telemetry != 0);
-            if self.is_telemetry_s_turn() || is_asked_for {
-                answer.telemetry = self
-                    .law
-                    .as_ref()
-                    .map(|law| report::telemetry(answer.command.sequence, law, &state, integral, &step));
+        if let (Some(frame), Some(state)) = (frame, good) {
+            if frame.action == LoadAction::LOAD_ACTION_START {
+                self.request = Request::Follow;
             }
-            if step.mode == Mode::Off {
-                // The supervisor has landed.
+            begin(rig, frame, state, self.request);
+        }
+        let integral = rig.integral();
+        let was_flying = is_flying(rig.mode());
+        let phase = frame.map_or(0.0, |frame| frame.reference_phase);
+        let Output { command, mode, fault, limited, .. } = *rig.step(state.as_ref(), self.request, phase);
+        let has_fallen_back = was_flying && self.request == Request::Follow && !is_flying(mode);
+        self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
+
+        faults |= fault.map_or(LoadFault::empty(), report::fault);
+        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited);
+        let u_zeta = rig.u_zeta();
+        let zeta = u_zeta.map_or([0.0; 4], |_| rig.zeta().map(report::number));
+        let rotor = rig.duties();
+        let mut answer = self.nothing(frame, faults);
+        answer.command = LOAD_COMMAND_DATA {
+            thrust: command.thrust,
+            torque: command.torque.into(),
+            zeta,
+            u_zeta: u_zeta.unwrap_or(0.0),
+            rotor,
+            ..answer.command
+        };
+        if self.drive() == Drive::Flight {
+            answer.outputs = rotor;
+        }
+        if let (Some(frame), Some(state)) = (frame, good) {
+            if self.is_telemetry_s_turn() || frame.telemetry != 0 {
+                answer.telemetry =
+                    self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
+            }
+            if mode == Mode::Off {
+                // Landed.
                 self.disarm();
             }
         }
         answer
     }
 
-    /// What a `step` says to the link and the rotors.
-    fn answer(&self, frame: Option<&LOAD_STATE_DATA>, faults: LoadFault, step: &Step, rotor: [f32; 4]) -> Answer {
-        let mut faults = faults | step.fault.map_or(LoadFault::empty(), report::fault);
-        faults.set(LoadFault::LOAD_FAULT_LIMITED, step.answer.is_some_and(|answer| answer.limited));
-        let (zeta, u_zeta) = step.answer.map_or(([0.0; 4], 0.0), |answer| (answer.zeta, answer.u_zeta));
-        let Answer { command, .. } = self.nothing(frame, faults);
-        let command = LOAD_COMMAND_DATA {
-            thrust: step.command.thrust,
-            torque: step.command.torque.into(),
-            zeta: zeta.map(report::number),
-            u_zeta,
-            rotor,
-            ..command
-        };
-        let outputs = if self.drive() == Drive::Flight { rotor } else { [0.0; 4] };
-        Answer { command, telemetry: None, outputs }
-    }
-
     /// Counts a step, and says whether it is one of every `TLM_EVERY`.
     fn is_telemetry_s_turn(&mut self) -> bool {
-        let every = self.parameters.get(Parameter::TelemetryEvery) as u32;
+        let every = self.settings.get(Setting::TELEMETRY_EVERY) as u32;
         let is_turn = every > 0 && self.until_telemetry == 0;
         self.until_telemetry = if is_turn { every - 1 } else { self.until_telemetry.saturating_sub(1) };
         is_turn
     }
 }
 
-/// What a good state does to the law's memory before the step on it; `applied` was the last command.
-fn begin(law: &mut Law, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request, applied: &Command<f32>) {
-    let is_off = law.mode() == Mode::Off;
-    let hover = Command { thrust: law.vehicle().hover_thrust(), torque: Vector3::zeros() };
-    let applied = if is_off { hover } else { *applied };
+/// What a good state does to the controller's memory before the step on it.
+fn begin(rig: &mut Rig<f32>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
+    let is_off = rig.mode() == Mode::Off;
+    let hover = Command { thrust: rig.vehicle().hover_thrust(), torque: Vector3::zeros() };
+    let applied = if is_off { hover } else { rig.output().command };
     match frame.action {
-        LoadAction::LOAD_ACTION_START => law.start(state, frame.zeta),
-        LoadAction::LOAD_ACTION_ENGAGE => law.take_over(state, applied),
-        LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => law.take_over(state, applied),
+        LoadAction::LOAD_ACTION_START => rig.start(state, frame.zeta),
+        LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
+        LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
         LoadAction::LOAD_ACTION_CONTINUE => {}
     }
+}
+
+/// Whether the frame has a finite ζ, if it is one to start with.
+fn may_start(frame: &LOAD_STATE_DATA) -> bool {
+    frame.action != LoadAction::LOAD_ACTION_START || frame.zeta.iter().all(|z| z.is_finite())
 }
 
 /// Whether the law flies.

@@ -2,12 +2,10 @@
 
 use core::fmt::Write;
 
-use controller::Channel;
-use controller::dynamics;
-use controller::{Fault, Margin, Mode, Request, State};
+use controller::{Channel, Fault, Margin, Mode, Request, State};
 use link::dialect::{LOAD_TELEMETRY_DATA, LoadFault, LoadMode};
 
-use crate::law::{Law, LawAnswer, Step};
+use rig::{LawNumbers, Rig};
 
 /// As long as a STATUSTEXT can be.
 pub type Text = heapless::String<50>;
@@ -100,27 +98,20 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
     text
 }
 
-/// Where the command of a `step` on `state` came from, with the `integral` as it was before.
-pub fn telemetry(
-    sequence: u32,
-    law: &Law,
-    state: &State<f32>,
-    integral: [f32; 3],
-    step: &Step,
-) -> LOAD_TELEMETRY_DATA {
-    let (vehicle, found) = (law.vehicle(), law.disturbance());
-    let lambda = dynamics::lambda(vehicle, state, step.command.thrust);
+/// Where the last command of `rig`, made on `state`, came from, with the `integral` as it was before.
+pub fn telemetry(sequence: u32, rig: &Rig<f32>, state: &State<f32>, integral: [f32; 3]) -> LOAD_TELEMETRY_DATA {
+    let rig::Telemetry { law, payload_force, uav_force, torque, payload_mass } = rig.telemetry(state);
     let mut telemetry = LOAD_TELEMETRY_DATA {
         sequence,
         integral: integral.map(number),
-        payload_force: found.payload_force(vehicle, &state.rod).into(),
-        uav_force: found.uav_force(vehicle, &state.rod).into(),
-        uav_torque: found.torque.into(),
-        payload_mass: number(found.implied_payload_mass(vehicle, &state.rod, lambda)),
-        warning: step.warning.map_or(LoadFault::empty(), margin),
+        payload_force,
+        uav_force,
+        uav_torque: torque,
+        payload_mass: number(payload_mass),
+        warning: rig.output().warning.map_or(LoadFault::empty(), margin),
         ..LOAD_TELEMETRY_DATA::DEFAULT
     };
-    if let Some(LawAnswer { xi, nu, margins, .. }) = &step.answer {
+    if let Some(LawNumbers { xi, nu, margins, .. }) = law {
         telemetry.xi = xi.map(number);
         telemetry.nu = nu.map(number);
         telemetry.q3 = margins.q3;

@@ -9,6 +9,7 @@ use controller::{Fault, Mode, Request};
 
 use crate::control::{Autopilot, Drive};
 use crate::report;
+use crate::settings::Settings;
 
 /// What the caller has to do after a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -139,7 +140,7 @@ impl Server {
             MavMessage::PARAM_REQUEST_READ(request) => {
                 let index = usize::try_from(request.param_index)
                     .ok()
-                    .or_else(|| crate::Parameters::index(link::text_of(&*request.param_id)));
+                    .or_else(|| Settings::index(link::text_of(&*request.param_id)));
                 match index.and_then(|index| value(autopilot, index)) {
                     Some(answer) => send(answer),
                     None => send(status(MavSeverity::MAV_SEVERITY_WARNING, "no such parameter")),
@@ -159,12 +160,12 @@ impl Server {
 
 /// A parameter's current value.
 fn value(autopilot: &Autopilot, index: usize) -> Option<MavMessage> {
-    let (entry, value) = autopilot.parameters().at(index)?;
+    let (entry, value) = autopilot.settings().at(index)?;
     Some(MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
         param_value: value,
-        param_count: crate::Parameters::COUNT as u16,
+        param_count: Settings::COUNT as u16,
         param_index: index as u16,
-        param_id: link::name(entry.name),
+        param_id: link::name(entry.name.as_str()),
         param_type: MavParamType::MAV_PARAM_TYPE_REAL32 as u8,
     }))
 }
@@ -177,15 +178,14 @@ fn set(request: &PARAM_SET_DATA, autopilot: &mut Autopilot, send: &mut impl FnMu
         let _ = write!(text, "{reason}: {name}");
         status(MavSeverity::MAV_SEVERITY_WARNING, &text)
     };
-    match autopilot.parameters_mut() {
+    match autopilot.settings_mut() {
         None => send(warn("not while armed")),
-        Some(parameters) => match parameters.set_by_name(name, request.param_value) {
+        Some(settings) => match settings.set_by_name(name, request.param_value) {
             Ok(_) => {}
-            Err(crate::Refused::Unknown) => send(warn("no such parameter")),
-            Err(crate::Refused::OutOfRange) => send(warn("out of range")),
+            Err(refused) => send(status(MavSeverity::MAV_SEVERITY_WARNING, &cut(refused))),
         },
     }
-    crate::Parameters::index(name).and_then(|index| value(autopilot, index)).into_iter().for_each(send);
+    Settings::index(name).and_then(|index| value(autopilot, index)).into_iter().for_each(send);
 }
 
 fn command(request: &COMMAND_LONG_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) -> Next {
@@ -201,11 +201,7 @@ fn command(request: &COMMAND_LONG_DATA, autopilot: &mut Autopilot, send: &mut im
         } else {
             match autopilot.arm() {
                 Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
-                Err(refused) => {
-                    let mut text = report::Text::new();
-                    let _ = write!(Cut(&mut text), "{refused}");
-                    denied(&text)
-                }
+                Err(refused) => denied(&cut(refused)),
             }
         }
     } else if request.command == MavCmd::MAV_CMD_DO_SET_MODE as u16 {
@@ -238,6 +234,13 @@ fn wanted(request: &COMMAND_LONG_DATA) -> Option<Request> {
 
 fn status(severity: MavSeverity, text: &str) -> MavMessage {
     MavMessage::STATUSTEXT(STATUSTEXT_DATA { severity: severity as u8, text: link::text(text) })
+}
+
+/// As much of it as fits.
+fn cut(what: impl core::fmt::Display) -> report::Text {
+    let mut text = report::Text::new();
+    let _ = write!(Cut(&mut text), "{what}");
+    text
 }
 
 /// Writes as much as fits.

@@ -1,11 +1,11 @@
 //! Whatever bytes come over the link, in whatever order, what goes out is finite and what the rotors can give.
 
-use autopilot::{Autopilot, Boot, Parameters};
+use autopilot::{Autopilot, Boot, Settings};
 use link::MavMessage;
 use link::dialect::*;
 use proptest::prelude::*;
 
-use crate::rig::{Rig, driven, frame_of, is_flyable, start};
+use crate::station::{Station, driven, frame_of, is_flyable, start};
 
 /// Something that comes over the link.
 #[derive(Clone, Debug)]
@@ -32,7 +32,7 @@ fn event() -> impl Strategy<Value = Event> {
     let bits = prop::option::weighted(0.2, any::<u32>());
     prop_oneof![
         8 => (0_u8..4, words).prop_map(|(action, words)| Event::State { action, words }),
-        1 => (0..Parameters::COUNT, 0.3_f32..3.0, bits)
+        1 => (0..Settings::COUNT, 0.3_f32..3.0, bits)
             .prop_map(|(index, factor, bits)| Event::Parameter { index, factor, bits }),
         1 => (0_u8..2).prop_map(|on| Event::Command(ARM, on.into(), 0.0)),
         2 => (0_u8..8).prop_map(|mode| Event::Command(MODE, 1.0, mode.into())),
@@ -75,23 +75,23 @@ proptest! {
 
     #[test]
     fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60), simulate in 0_u8..3) {
-        let mut rig = Rig::new(driven(simulate.into()));
-        rig.ask(LoadMode::LOAD_MODE_FOLLOW);
-        rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+        let mut station = Station::new(driven(simulate.into()));
+        station.ask(LoadMode::LOAD_MODE_FOLLOW);
+        station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         let mut sequence = 0;
         for event in events {
             let bytes = match event {
                 Event::State { action, words } => {
                     sequence += 1;
-                    rig.encode(&state(sequence, action, &words))
+                    station.encode(&state(sequence, action, &words))
                 }
                 Event::Parameter { index, factor, bits } => {
-                    let (entry, _) = rig.autopilot.parameters().at(index).expect("it is one of the table's");
+                    let (entry, _) = station.autopilot.settings().at(index).expect("it is one of the table's");
                     let param_value = bits.map_or(entry.default * factor, f32::from_bits);
-                    let param_id = link::name(entry.name);
-                    rig.encode(&MavMessage::PARAM_SET(PARAM_SET_DATA { param_value, param_id, ..PARAM_SET_DATA::DEFAULT }))
+                    let param_id = link::name(entry.name.as_str());
+                    station.encode(&MavMessage::PARAM_SET(PARAM_SET_DATA { param_value, param_id, ..PARAM_SET_DATA::DEFAULT }))
                 }
-                Event::Command(command, param1, param2) => rig.encode(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+                Event::Command(command, param1, param2) => station.encode(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
                     param1,
                     param2,
                     command,
@@ -99,22 +99,22 @@ proptest! {
                 })),
                 Event::Noise(bytes) => bytes,
                 Event::Cut(length) => {
-                    let mut bytes = rig.encode(&state(sequence, 2, &[]));
+                    let mut bytes = station.encode(&state(sequence, 2, &[]));
                     bytes.truncate(length);
                     bytes
                 }
                 Event::Ticks(count) => {
                     for _ in 0..count {
-                        let answer = rig.autopilot.tick();
-                        prop_assert!(is_flyable(&answer, rig.autopilot.parameters()), "{:?}", answer);
-                        prop_assert!(rig.autopilot.is_armed() || answer.outputs == [0.0; 4]);
+                        let answer = station.autopilot.tick();
+                        prop_assert!(is_flyable(&answer, station.autopilot.settings()), "{:?}", answer);
+                        prop_assert!(station.autopilot.is_armed() || answer.outputs == [0.0; 4]);
                     }
                     continue;
                 }
             };
-            let (_, answers) = rig.hear(&bytes);
+            let (_, answers) = station.hear(&bytes);
             for answer in answers {
-                prop_assert!(is_flyable(&answer, rig.autopilot.parameters()), "{:?}", answer);
+                prop_assert!(is_flyable(&answer, station.autopilot.settings()), "{:?}", answer);
                 prop_assert_eq!(answer.outputs, [0.0; 4]);
             }
         }
@@ -128,15 +128,15 @@ fn one_bad_number_at_a_time_leads_nowhere() {
         [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1.0, -1.0];
     for index in 0..29 {
         for value in odd {
-            let mut rig = Rig::new(Autopilot::new(Boot::default()));
-            rig.ask(LoadMode::LOAD_MODE_FOLLOW);
-            rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+            let mut station = Station::new(Autopilot::new(Boot::default()));
+            station.ask(LoadMode::LOAD_MODE_FOLLOW);
+            station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
             for sequence in 1..20 {
                 let words = if sequence % 3 == 0 { vec![(index, value.to_bits())] } else { vec![] };
-                let bytes = rig.encode(&state(sequence, 2, &words));
-                rig.hear(&bytes);
-                let answer = rig.autopilot.tick();
-                assert!(is_flyable(&answer, rig.autopilot.parameters()), "{index} {value}: {answer:?}");
+                let bytes = station.encode(&state(sequence, 2, &words));
+                station.hear(&bytes);
+                let answer = station.autopilot.tick();
+                assert!(is_flyable(&answer, station.autopilot.settings()), "{index} {value}: {answer:?}");
             }
         }
     }

@@ -1,12 +1,13 @@
 //! When the law is stepped, on which state, and what is counted and reported.
 
-use autopilot::{Autopilot, Boot, Parameter, Parameters, Refused, Server};
+use autopilot::{Autopilot, Boot, Server, Setting, Settings};
 use controller::{Mode, Request};
 use link::MavMessage;
 use link::dialect::*;
 use proptest::prelude::*;
+use rig::{Refused, parameter, run};
 
-use crate::rig::{Rig, arm_in_flight, armed, driven, fly, frame, is_flyable};
+use crate::station::{Station, arm_in_flight, armed, driven, fly, frame, is_flyable, set};
 
 #[test]
 fn nothing_turns_unless_armed_and_given_a_state() {
@@ -102,7 +103,7 @@ fn telemetry_comes_in_its_turn_and_when_it_is_asked_for() {
         (0.0, 4, [false, false, false, true, false, false]),
     ] {
         let mut autopilot = driven(0.0);
-        autopilot.parameters_mut().unwrap().set(Parameter::TelemetryEvery, every);
+        autopilot.settings_mut().unwrap().set(Setting::TELEMETRY_EVERY, every).unwrap();
         arm_in_flight(&mut autopilot);
         let came = [1, 2, 3, 4, 5, 6].map(|sequence| {
             autopilot.receive(&LOAD_STATE_DATA { telemetry: u8::from(sequence == asked), ..frame(sequence) });
@@ -120,11 +121,10 @@ fn telemetry_comes_in_its_turn_and_when_it_is_asked_for() {
 fn rotors_that_were_cut_stay_so_until_it_is_armed_anew() {
     for law in [0.0, 1.0] {
         let mut autopilot = driven(0.0);
-        let parameters = autopilot.parameters_mut().unwrap();
-        parameters.set(Parameter::Sink, -1.0);
-        parameters.set(Parameter::Law, law);
+        set(&mut autopilot, parameter!("POL_SINK"), -1.0);
+        set(&mut autopilot, parameter!("CTL_LAW"), law);
         if law > 0.5 {
-            parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
+            six_gains_of_p3(&mut autopilot);
         }
         arm_in_flight(&mut autopilot);
         assert!(fly(&mut autopilot, 1).outputs.iter().all(|&duty| duty > 0.3));
@@ -137,16 +137,21 @@ fn rotors_that_were_cut_stay_so_until_it_is_armed_anew() {
     }
 }
 
+/// The tracking law's chain of p3 is one longer than the following law's of h3.
+fn six_gains_of_p3(autopilot: &mut Autopilot) {
+    let gains = [720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0];
+    autopilot.settings_mut().unwrap().rig_mut().set_run(run!("K3_0" to "K3_5"), gains).unwrap();
+}
+
 #[test]
 fn the_tracking_law_has_a_guard_of_its_own() {
     let mut autopilot = driven(0.0);
-    let parameters = autopilot.parameters_mut().unwrap();
-    parameters.set(Parameter::Law, 1.0);
-    parameters.set_run(Parameter::K3D0, &[720.0, 1764.0, 1624.0, 735.0, 175.0, 21.0]).unwrap();
+    set(&mut autopilot, parameter!("CTL_LAW"), 1.0);
+    six_gains_of_p3(&mut autopilot);
     assert!(!autopilot.request(Request::Hold));
     arm_in_flight(&mut autopilot);
     assert_eq!(autopilot.tick().outputs, [0.0; 4]);
-    let parameters = autopilot.parameters().clone();
+    let parameters = autopilot.settings().clone();
     for (sequence, phase) in (1..).zip([0.0, f32::NAN, 0.0, f32::INFINITY, 0.0]) {
         autopilot.receive(&LOAD_STATE_DATA { reference_phase: phase, ..frame(sequence) });
         let answer = autopilot.tick();
@@ -161,12 +166,12 @@ fn the_tracking_law_has_a_guard_of_its_own() {
 
 #[test]
 fn old_and_bad_states_are_refused_counted_and_named() {
-    let mut rig = Rig::new(armed(0.0));
-    fly(&mut rig.autopilot, 5);
-    rig.news();
-    assert!(fly(&mut rig.autopilot, 4).command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
-    assert_eq!((rig.autopilot.mode(), rig.autopilot.counters().refused), (Mode::Join, 1));
-    assert_eq!(rig.news(), ["joining the path: no state"]);
+    let mut station = Station::new(armed(0.0));
+    fly(&mut station.autopilot, 5);
+    station.news();
+    assert!(fly(&mut station.autopilot, 4).command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
+    assert_eq!((station.autopilot.mode(), station.autopilot.counters().refused), (Mode::Join, 1));
+    assert_eq!(station.news(), ["joining the path: no state"]);
 
     type Spoil = fn(&mut LOAD_STATE_DATA);
     let spoilt: [(&str, Spoil); 6] = [
@@ -175,21 +180,21 @@ fn old_and_bad_states_are_refused_counted_and_named() {
         ("rod", |frame| frame.rod[2] = 1.2),
         ("attitude", |frame| frame.attitude[0] = -1.0),
         ("body rate", |frame| frame.body_rate[2] = 1e30),
-        // As a state that is missing: no position.
-        ("position", |frame| frame.zeta[3] = f32::NAN),
+        // Nothing to start with: as a state that is missing, no position.
+        ("position", |frame| (frame.action, frame.zeta[3]) = (LoadAction::LOAD_ACTION_START, f32::NAN)),
     ];
     for (sequence, (name, spoil)) in (6..).zip(spoilt) {
         let mut frame = frame(sequence);
         spoil(&mut frame);
-        rig.autopilot.receive(&frame);
-        let answer = rig.autopilot.tick();
+        station.autopilot.receive(&frame);
+        let answer = station.autopilot.tick();
         assert!(answer.command.faults.contains(LoadFault::LOAD_FAULT_BAD_STATE), "{name}");
-        assert_eq!(rig.autopilot.mode(), Mode::Join, "{name}");
-        let said = rig.news();
+        assert_eq!(station.autopilot.mode(), Mode::Join, "{name}");
+        let said = station.news();
         // What was said last is not said again.
         assert!(sequence == 6 || said == [format!("joining the path: bad {name}")], "{said:?}");
     }
-    assert_eq!(rig.autopilot.counters().refused, 7);
+    assert_eq!(station.autopilot.counters().refused, 7);
 }
 
 #[test]
@@ -238,35 +243,40 @@ fn lockstep_answers_the_same_question_the_same_way() {
 
 #[test]
 fn parameters_are_kept_in_range_and_closed_in_flight() {
-    let mut parameters = Parameters::default();
-    assert_eq!(parameters.set_by_name("VEH_M_LOAD", -1.0), Err(Refused::OutOfRange));
-    assert_eq!(parameters.set_by_name("VEH_M_LOAD", f32::NAN), Err(Refused::OutOfRange));
-    assert_eq!(parameters.set_by_name("NO_SUCH", 1.0), Err(Refused::Unknown));
-    assert_eq!(parameters.set_by_name("LINK_DIALECT", 0.0), Err(Refused::OutOfRange));
-    assert!(parameters.set_by_name("VEH_M_LOAD", 0.75).is_ok());
-    assert_eq!(parameters.get(Parameter::PayloadMass), 0.75);
-    assert!(armed(0.0).parameters_mut().is_none());
+    let mut settings = Settings::default();
+    for (name, value) in [("VEH_M_LOAD", -1.0), ("VEH_M_LOAD", f32::NAN), ("LINK_DIALECT", 0.0)] {
+        assert!(matches!(settings.set_by_name(name, value), Err(Refused::OutOfRange(..))), "{name} = {value}");
+    }
+    for (name, value) in
+        [("SYS_SIM", 0.5), ("CTL_LAW", 0.6), ("PATH_KIND", 2.7), ("PATH_EXP2", 1.5), ("TLM_EVERY", 0.1)]
+    {
+        assert!(matches!(settings.set_by_name(name, value), Err(Refused::NotWhole(..))), "{name} = {value}");
+    }
+    assert_eq!(settings.set_by_name("NO_SUCH", 1.0), Err(Refused::Unknown));
+    assert_eq!(settings, Settings::default());
+    assert!(settings.set_by_name("VEH_M_LOAD", 0.75).is_ok());
+    assert_eq!(settings.rig().get(parameter!("VEH_M_LOAD")), 0.75);
+    assert!(armed(0.0).settings_mut().is_none());
 }
 
 #[test]
 fn an_unstable_law_is_not_armed_with() {
     let mut autopilot = Autopilot::new(Boot::default());
-    autopilot.parameters_mut().unwrap().set(Parameter::K1D0, -1.0);
-    let mut rig = Rig::new(autopilot);
-    let (result, said) = rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    set(&mut autopilot, parameter!("K1_0"), -1.0);
+    let mut station = Station::new(autopilot);
+    let (result, said) = station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     assert_eq!((result, said.len()), (MavResult::MAV_RESULT_DENIED as u8, 1), "{said:?}");
-    assert!(!rig.autopilot.is_armed());
+    assert!(!station.autopilot.is_armed());
 }
 
 #[test]
 fn a_number_that_the_controller_refuses_is_named_with_its_range() {
     let mut autopilot = Autopilot::new(Boot::default());
-    let parameters = autopilot.parameters_mut().unwrap();
-    parameters.set(Parameter::PayloadMass, 0.125);
-    parameters.set(Parameter::Gravity, 8.0);
-    let (result, said) = Rig::new(autopilot).command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    set(&mut autopilot, parameter!("LIM_T_MIN"), 50.0);
+    set(&mut autopilot, parameter!("LIM_T_MAX"), 32.0);
+    let (result, said) = Station::new(autopilot).command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8);
-    assert_eq!(said, ["tension = 1.2 is outside 0.5 to 1"]);
+    assert_eq!(said, ["LIM_T_MAX = 32 is outside 50 to 1000000"]);
 }
 
 proptest! {
@@ -276,7 +286,7 @@ proptest! {
     #[test]
     fn whatever_comes_in(words in prop::collection::vec(any::<u32>(), 30), every in 1_usize..30, steps in 1_u32..8) {
         let mut autopilot = armed(0.0);
-        let parameters = autopilot.parameters().clone();
+        let parameters = autopilot.settings().clone();
         for sequence in 1..=steps {
             let mut frame = frame(sequence);
             let fields = [&mut frame.position[..], &mut frame.velocity, &mut frame.rod, &mut frame.rod_rate, &mut frame.attitude, &mut frame.body_rate];

@@ -4,5 +4,4 @@
 mod bytes;
 mod control;
 mod modes;
-mod rig;
-mod rotors;
+mod station;

@@ -1,18 +1,19 @@
 //! A vehicle in flight on the program, rotors and all: requests over the link, the envelope, and states that fail.
 
-use autopilot::{Answer, Autopilot, Boot, Parameter};
+use autopilot::{Answer, Autopilot, Boot, Setting};
 use controller::{Command, Mode, State, Vector3};
 use hil_sim::world::multibody::{Loads, Multibody};
 use link::dialect::*;
+use rig::parameter;
 use witness::plant::VehicleParameters;
 
-use crate::rig::{Rig, frame_of, is_flyable, start};
+use crate::station::{Station, frame_of, is_flyable, set, start};
 
 const PERIOD: f64 = 0.002;
 
 /// The plant under the program.
 struct Flight {
-    rig: Rig,
+    station: Station,
     body: Multibody,
     sequence: u32,
 }
@@ -24,20 +25,20 @@ impl Flight {
     }
 
     fn of(autopilot: Autopilot) -> Self {
-        let mut rig = Rig::new(autopilot);
-        rig.ask(LoadMode::LOAD_MODE_FOLLOW);
-        let (result, said) = rig.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+        let mut station = Station::new(autopilot);
+        station.ask(LoadMode::LOAD_MODE_FOLLOW);
+        let (result, said) = station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         assert_eq!(result, MavResult::MAV_RESULT_ACCEPTED as u8, "{said:?}");
-        Self { rig, body: Multibody::new(VehicleParameters::default(), &start().cast()), sequence: 0 }
+        Self { station, body: Multibody::new(VehicleParameters::default(), &start().cast()), sequence: 0 }
     }
 
     /// A control period in which the program sees `frame`, if anything.
     fn step_seeing(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         if let Some(frame) = frame {
-            self.rig.autopilot.receive(frame);
+            self.station.autopilot.receive(frame);
         }
-        let answer = self.rig.autopilot.tick();
-        assert!(is_flyable(&answer, self.rig.autopilot.parameters()), "{answer:?}");
+        let answer = self.station.autopilot.tick();
+        assert!(is_flyable(&answer, self.station.autopilot.settings()), "{answer:?}");
         let LOAD_COMMAND_DATA { thrust, torque, .. } = &answer.command;
         let command = Command { thrust: f64::from(*thrust), torque: Vector3::from(*torque).map(f64::from) };
         self.body.advance(PERIOD, |_| command, |_, _| Loads::none());
@@ -63,7 +64,7 @@ impl Flight {
     }
 
     fn mode(&self) -> Mode {
-        self.rig.autopilot.mode()
+        self.station.autopilot.mode()
     }
 
     /// Up to `seconds`, until `mode` is reached.
@@ -74,11 +75,11 @@ impl Flight {
                 return;
             }
         }
-        panic!("{mode:?} not reached in {seconds} s: {:?}, {:?}", self.mode(), self.rig.autopilot.fault());
+        panic!("{mode:?} not reached in {seconds} s: {:?}, {:?}", self.mode(), self.station.autopilot.fault());
     }
 
     fn ask(&mut self, mode: LoadMode) {
-        assert_eq!(self.rig.ask(mode).0, MavResult::MAV_RESULT_ACCEPTED as u8);
+        assert_eq!(self.station.ask(mode).0, MavResult::MAV_RESULT_ACCEPTED as u8);
     }
 }
 
@@ -86,19 +87,19 @@ impl Flight {
 fn what_the_pilot_asks_for_over_the_link_is_done() {
     let mut flight = Flight::new();
     flight.until(Mode::Follow, 30.0);
-    assert_eq!(flight.rig.news(), ["on the path"]);
+    assert_eq!(flight.station.news(), ["on the path"]);
     flight.ask(LoadMode::LOAD_MODE_HOLD);
     flight.step();
-    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Hold, vec!["hold".to_owned()]));
+    assert_eq!((flight.mode(), flight.station.news()), (Mode::Hold, vec!["hold".to_owned()]));
     flight.ask(LoadMode::LOAD_MODE_FOLLOW);
     flight.step();
-    assert_eq!((flight.mode(), flight.rig.news()), (Mode::Join, vec!["joining the path".to_owned()]));
+    assert_eq!((flight.mode(), flight.station.news()), (Mode::Join, vec!["joining the path".to_owned()]));
     flight.until(Mode::Follow, 30.0);
     // In flight, to idle is to hold.
     flight.ask(LoadMode::LOAD_MODE_IDLE);
     flight.step();
     assert_eq!(flight.mode(), Mode::Hold);
-    assert_eq!(flight.rig.autopilot.counters().fallbacks, 0);
+    assert_eq!(flight.station.autopilot.counters().fallbacks, 0);
 }
 
 #[test]
@@ -118,19 +119,19 @@ fn on_the_ground_it_disarms() {
     });
     let last = down.skip_while(|answer| answer.command.mode != LoadMode::LOAD_MODE_OFF).last().expect("it lands");
     assert_eq!(last.outputs, [0.0; 4]);
-    assert!(!flight.rig.autopilot.is_armed());
+    assert!(!flight.station.autopilot.is_armed());
 }
 
 #[test]
 fn modes_that_cannot_be_asked_for_are_denied_in_words() {
-    let mut rig = Rig::new(Autopilot::new(Boot::default()));
+    let mut station = Station::new(Autopilot::new(Boot::default()));
     for mode in [LoadMode::LOAD_MODE_OFF, LoadMode::LOAD_MODE_ENGAGE, LoadMode::LOAD_MODE_FAULT] {
-        let (result, said) = rig.ask(mode);
+        let (result, said) = station.ask(mode);
         assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8, "{mode:?}");
         assert_eq!(said, ["modes to ask for: idle, follow, hold, land"]);
     }
     // Without the flag it is no mode of this dialect.
-    let (result, _) = rig.command(MavCmd::MAV_CMD_DO_SET_MODE, 0.0, LoadMode::LOAD_MODE_HOLD as u32 as f32);
+    let (result, _) = station.command(MavCmd::MAV_CMD_DO_SET_MODE, 0.0, LoadMode::LOAD_MODE_HOLD as u32 as f32);
     assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8);
 }
 
@@ -138,7 +139,7 @@ fn modes_that_cannot_be_asked_for_are_denied_in_words() {
 fn beyond_the_envelope_it_holds_says_why_and_goes_back() {
     let mut flight = Flight::new();
     flight.until(Mode::Follow, 30.0);
-    flight.rig.news();
+    flight.station.news();
     let answer = flight.step_leaning();
     assert_eq!(answer.command.mode, LoadMode::LOAD_MODE_HOLD);
     let margins = LoadFault::LOAD_FAULT_ROD_ANGLE
@@ -147,9 +148,9 @@ fn beyond_the_envelope_it_holds_says_why_and_goes_back() {
         | LoadFault::LOAD_FAULT_THRUST;
     let named = answer.command.faults & margins;
     assert!(named.bits().is_power_of_two(), "{:?}", answer.command.faults);
-    let said = flight.rig.news();
+    let said = flight.station.news();
     assert!(said.len() == 1 && said[0].starts_with("hold: "), "{said:?}");
-    assert_eq!(flight.rig.autopilot.counters().fallbacks, 1);
+    assert_eq!(flight.station.autopilot.counters().fallbacks, 1);
 
     flight.until(Mode::Join, 30.0);
     flight.until(Mode::Follow, 30.0);
@@ -162,7 +163,7 @@ fn beyond_the_envelope_it_holds_says_why_and_goes_back() {
 #[test]
 fn a_policy_that_does_not_resume_waits_to_be_asked_again() {
     let mut autopilot = Autopilot::new(Boot::default());
-    autopilot.parameters_mut().unwrap().set(Parameter::Resume, 0.0);
+    set(&mut autopilot, parameter!("POL_RESUME"), 0.0);
     let mut flight = Flight::of(autopilot);
     flight.until(Mode::Follow, 30.0);
     flight.step_leaning();
@@ -206,7 +207,7 @@ fn failing_states_lead_to_fault_and_back() {
 #[test]
 fn what_the_observers_find_is_told_in_newtons_and_kilograms() {
     let mut autopilot = Autopilot::new(Boot::default());
-    autopilot.parameters_mut().unwrap().set(Parameter::TelemetryEvery, 1.0);
+    autopilot.settings_mut().unwrap().set(Setting::TELEMETRY_EVERY, 1.0).unwrap();
     let mut flight = Flight::of(autopilot);
     // Not the half kilogram that the law is told.
     flight.body.set_payload_mass(0.65);

@@ -216,6 +216,19 @@ impl<T: Real, const N: usize> Rotors<T, N> {
     }
 }
 
+impl<T: Real, const N: usize> Rotors<T, N> {
+    /// The speeds, rad/s, of a command as it was [applied](Actuation::apply): those that [`allocate`](Self::allocate) finds for it, without
+    /// looking for what has to be given up.
+    #[inline]
+    pub fn speeds(&self, applied: &Command<T>) -> [T; N] {
+        let Command { thrust, torque } = applied;
+        self.inverse.map(|[t, r, p, y]| {
+            let force = r * torque.x + p * torque.y + t * *thrust + y * torque.z;
+            (force.clamp(self.least_force, self.largest_force) * self.per_thrust_coefficient).sqrt()
+        })
+    }
+}
+
 impl<T: Real> Rotors<T, 4> {
     /// A quadrotor with arms of `arm` m, its first rotor in front; spins alternate around it, counter-clockwise first.
     pub fn quad_plus(rotor: RotorParams<T>, arm: T) -> Result<Self, OutOfRange<T>> {

@@ -1,6 +1,7 @@
 //! Fields given by a user: read with the path to each, so that an error names the field that caused it.
 
 use controller::{OutOfRange, Real};
+use rig::Refused;
 use serde::de::{DeserializeOwned, Deserializer};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
@@ -25,6 +26,19 @@ impl Invalid {
     pub fn out_of_range<T: Real>(at: &str, error: OutOfRange<T>) -> Self {
         let OutOfRange { field, value, min, max } = error;
         Self::new(join(at, field), format_args!("{value} is outside {min} to {max}"))
+    }
+}
+
+impl Invalid {
+    /// A value that a parameter does not take, given as `field`.
+    pub fn refused(field: String, refused: Refused<f64>) -> Self {
+        match refused {
+            Refused::OutOfRange(entry, value) => {
+                Self::new(field, format_args!("{value} is outside {} to {}", entry.min, entry.max))
+            }
+            Refused::NotWhole(_, value) => Self::new(field, format_args!("{value} is not a whole number")),
+            Refused::Unknown => Self::new(field, refused),
+        }
     }
 }
 

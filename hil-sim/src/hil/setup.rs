@@ -1,146 +1,129 @@
-//! A scenario's controller as the target's parameters.
+//! A scenario's controller as the parameters of the controller that flies it.
 
-use autopilot::{HARMONICS, Parameter, Parameters};
-use controller::{ApproachLimits, Gains, ObserverParams, TrackGains, Vehicle};
+use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
+use rig::{HARMONICS, Parameter, Parameters, Refused, Run, Shape, parameter, run};
 
 use super::HilError;
 use crate::describe::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
 
-/// Sets a run of parameters.
-type Set<'a> = &'a mut dyn FnMut(Parameter, &[f32]) -> Result<(), HilError>;
-
-/// The parameters with which the target makes the law that `spec` describes, number by number as this program's f32 law has it. That is the law
-/// alone: so the target's supervisor gets the widest envelope there is, and rotors that give whatever the law's own limits let through.
+/// The parameters with which a [`Rig`](rig::Rig) makes the law that `spec` describes. That is the law alone: so its supervisor gets the
+/// widest envelope there is, and rotors that give whatever the law's own limits let through.
 ///
 /// # Errors
-/// [`HilError::Unsupported`] for a path that the target's program does not have, or a number outside a parameter's range.
-pub fn parameters(spec: &ControllerSpec) -> Result<Parameters, HilError> {
+/// [`HilError::Unsupported`] for a path that has no parameters, or a number outside a parameter's range.
+pub fn parameters(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
+    let mut parameters = law(spec)?;
+    if let Law::Follow { path, .. } = &spec.law {
+        set_path(path, &mut parameters)?;
+    }
+    Ok(parameters)
+}
+
+/// The same for any path: all but the path's own.
+///
+/// # Errors
+/// [`HilError::Unsupported`] for a number outside a parameter's range.
+pub fn law(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
     let mut parameters = Parameters::default();
-    let mut set = |first, values: &[f32]| {
-        parameters.set_run(first, values).map_err(|_| {
-            HilError::Unsupported(format!("{values:?} is out of the range of the parameters from {first:?} on"))
-        })
-    };
-    let vehicle = spec.vehicle.cast::<f32>();
-    set(Parameter::PayloadMass, &[vehicle.payload_mass, vehicle.uav_mass, vehicle.rod_length])?;
-    set(Parameter::Inertia1, &vehicle.inertia)?;
-    set(Parameter::Gravity, &[vehicle.gravity])?;
-    let sampling = spec.sampling().cast::<f32>();
-    set(Parameter::Period, &[sampling.period, sampling.latency, sampling.rotor_lag, on(sampling.look_ahead)])?;
-    set_observer(&spec.observer.cast(), &mut set)?;
-    let limits = spec.limits.cast::<f32>();
-    // No limits are 10⁶ of either kind; the target's range ends sooner, and further off than any flight.
-    set(Parameter::ThrustMin, &[limits.min_thrust.max(0.0), limits.max_thrust.min(1e4)])?;
-    set(Parameter::TorqueMax1, &limits.max_torque.map(|torque| torque.min(1e3)))?;
-    let told = Vehicle::new(vehicle).map_err(|error| HilError::Unsupported(error.to_string()))?;
-    set_supervisor(&told, &mut set)?;
+    let all = &mut parameters;
+    let VehicleParams { payload_mass, uav_mass, rod_length, inertia, gravity } = spec.vehicle;
+    run_of(all, run!("VEH_M_LOAD" to "VEH_ROD"), [payload_mass, uav_mass, rod_length])?;
+    run_of(all, run!("VEH_J1" to "VEH_J3"), inertia)?;
+    one(all, parameter!("VEH_G"), gravity)?;
+    let Sampling { period, latency, rotor_lag, look_ahead } = spec.sampling();
+    run_of(all, run!("CTL_PERIOD" to "CTL_AHEAD"), [period, latency, rotor_lag, f64::from(u8::from(look_ahead))])?;
+    let ObserverParams { payload_bandwidth, rod_bandwidth, torque_bandwidth, .. } = spec.observer;
+    run_of(all, run!("OBS_W_LOAD" to "OBS_W_TAU"), [payload_bandwidth, rod_bandwidth, torque_bandwidth])?;
+    let ObserverParams { payload_bound, rod_bound, torque_bound, .. } = spec.observer;
+    run_of(all, run!("OBS_MAX_LOAD" to "OBS_MAX_TAU"), [payload_bound, rod_bound, torque_bound])?;
+    let ActuatorLimits { min_thrust, max_thrust, max_torque } = spec.limits;
+    // No limits are 10⁶ of either kind; the table's range ends sooner, and further off than any flight.
+    run_of(all, run!("LIM_T_MIN" to "LIM_T_MAX"), [min_thrust.max(0.0), max_thrust.min(1e4)])?;
+    run_of(all, run!("LIM_TAU_1" to "LIM_TAU_3"), max_torque.map(|torque| torque.min(1e3)))?;
+    open_up(all)?;
     match &spec.law {
-        Law::Follow { path, gains } => {
-            let Gains { k1, k2, k3, k4, integral } = gains.cast::<f32>();
-            set(Parameter::Law, &[0.0])?;
-            set(Parameter::K1D0, &k1)?;
-            set(Parameter::K2D0, &k2)?;
-            set(Parameter::K3D0, &k3)?;
-            set(Parameter::K4D0, &k4)?;
-            set(Parameter::KI1, &integral)?;
-            set_path(path, &mut set)?;
+        Law::Follow { gains, .. } => {
+            let Gains { k1, k2, k3, k4, integral } = *gains;
+            one(all, parameter!("CTL_LAW"), 0.0)?;
+            run_of(all, run!("K1_0" to "K1_5"), k1)?;
+            run_of(all, run!("K2_0" to "K2_5"), k2)?;
+            run_of(all, run!("K3_0" to "K3_4"), k3)?;
+            run_of(all, run!("K4_0" to "K4_1"), k4)?;
+            run_of(all, run!("KI_1" to "KI_3"), integral)?;
         }
         Law::Track { reference, gains } => {
-            let TrackGains { position: [k1, k2, k3], yaw } = gains.cast::<f32>();
-            set(Parameter::Law, &[1.0])?;
-            set(Parameter::K1D0, &k1)?;
-            set(Parameter::K2D0, &k2)?;
-            set(Parameter::K3D0, &k3)?;
-            set(Parameter::K4D0, &yaw)?;
-            set(Parameter::PathRadius, &[reference.radius as f32, reference.p3 as f32])?;
-            set(Parameter::ReferenceRate, &[reference.rate as f32])?;
+            let TrackGains { position: [k1, k2, k3], yaw } = *gains;
+            one(all, parameter!("CTL_LAW"), 1.0)?;
+            run_of(all, run!("K1_0" to "K1_5"), k1)?;
+            run_of(all, run!("K2_0" to "K2_5"), k2)?;
+            run_of(all, run!("K3_0" to "K3_5"), k3)?;
+            run_of(all, run!("K4_0" to "K4_1"), yaw)?;
+            run_of(all, run!("PATH_RADIUS" to "PATH_P3"), [reference.radius, reference.p3])?;
+            one(all, parameter!("REF_RATE"), reference.rate)?;
         }
     }
     Ok(parameters)
 }
 
-/// A switch as a parameter.
-fn on(switch: bool) -> f32 {
-    f32::from(u8::from(switch))
-}
-
-fn set_observer(params: &ObserverParams<f32>, set: Set<'_>) -> Result<(), HilError> {
-    set(Parameter::ObserverPayload, &[params.payload_bandwidth, params.rod_bandwidth, params.torque_bandwidth])?;
-    set(Parameter::ObserverPayloadBound, &[params.payload_bound, params.rod_bound, params.torque_bound])
-}
-
-/// What the law alone does not have: nothing that would ever change what it does.
-fn set_supervisor(vehicle: &Vehicle<f32>, set: Set<'_>) -> Result<(), HilError> {
-    let angles = [1.5; 2];
-    set(Parameter::RodAngleWarning, &angles)?;
-    set(Parameter::ThrustAngleWarning, &angles)?;
-    set(Parameter::RollWarning, &angles)?;
-    // Tension, thrust, path and reach.
-    set(Parameter::TensionWarning, &[0.0; 8])?;
-    set(Parameter::PayloadLost, &[-1.0])?;
-    let ApproachLimits { min_thrust, max_thrust, .. } = ApproachLimits::gentle(vehicle);
-    set(Parameter::ApproachThrustMin, &[min_thrust, max_thrust])?;
+/// Sets what the law alone does not have: to nothing that would ever change what it does.
+fn open_up(all: &mut Parameters<f64>) -> Result<(), HilError> {
+    // Rod, thrust axis and roll; tension, thrust, path and reach.
+    run_of(all, run!("ENV_ROD_WARN" to "ENV_ROLL_LIM"), [1.5; 6])?;
+    run_of(all, run!("ENV_TENS_WARN" to "ENV_REACH_LIM"), [0.0; 8])?;
+    one(all, parameter!("POL_LOAD_LOST"), -1.0)?;
     // 10 kN at full speed each, on arms of 10 m, with as much torque as thrust.
-    set(Parameter::RotorArm, &[10.0, 1e-4, 1e-4, 0.0, 1e4])
+    run_of(all, run!("ROT_ARM" to "ROT_W_MAX"), [10.0, 1e-4, 1e-4, 0.0, 1e4])
 }
 
-fn set_path(path: &PathSpec, set: Set<'_>) -> Result<(), HilError> {
-    let unsupported = |what: &str| Err(HilError::Unsupported(format!("{what} is for simulation only")));
-    let f = |x: &f64| *x as f32;
-    let kind = match &path.curve {
-        CurveSpec::Circle { radius, p3 } => {
-            set(Parameter::PathRadius, &[f(radius), f(p3)])?;
-            0
-        }
-        CurveSpec::Ellipse { a, b, c0, c1 } => {
-            set(Parameter::PathA, &[a, b, c0, c1].map(f))?;
-            1
-        }
-        CurveSpec::Bent { a, b, c0 } => {
-            set(Parameter::PathA, &[a, b, c0].map(f))?;
-            2
-        }
-        CurveSpec::Superellipse { a, b, half_exponent, c0, c1 } => {
-            set(Parameter::PathA, &[a, b, c0, c1].map(f))?;
-            set(Parameter::PathHalfExponent, &[f32::from(*half_exponent)])?;
-            3
-        }
-        CurveSpec::Tilted { center, normal, major, a, b } => {
-            set(Parameter::PathA, &[a, b].map(f))?;
-            set(Parameter::PathCenter1, &center.each_ref().map(f))?;
-            set(Parameter::PathNormal1, &normal.each_ref().map(f))?;
-            set(Parameter::PathMajor1, &major.each_ref().map(f))?;
-            4
+/// Sets the path's curve, speed and yaw.
+fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), HilError> {
+    let formula = |what: &str| Err(HilError::Unsupported(format!("{what} by formula is for simulation only")));
+    match &path.curve {
+        CurveSpec::Numbers(described) => {
+            one(all, parameter!("PATH_KIND"), described.get(parameter!("PATH_KIND")))?;
+            for parameter in Shape::of(described).fields().iter().flat_map(|field| field.parameters()) {
+                one(all, parameter, described.get(parameter))?;
+            }
         }
         CurveSpec::Fourier(harmonics) => {
-            let beyond = harmonics.cos.iter().chain(&harmonics.sin).enumerate();
-            let rows = harmonics.cos.len();
-            if beyond.filter(|(row, _)| row % rows >= HARMONICS).any(|(_, row)| *row != [0.0; 3]) {
-                return Err(HilError::Unsupported(format!("the curve has more than {HARMONICS} harmonics")));
-            }
-            let flat = |rows: &[[f64; 3]]| rows.iter().take(HARMONICS).flatten().map(f).collect::<Vec<f32>>();
-            set(Parameter::PathCenter1, &harmonics.center.each_ref().map(f))?;
-            set(Parameter::PathNormal1, &harmonics.reference.each_ref().map(f))?;
-            set(Parameter::Cos11, &flat(&harmonics.cos))?;
-            set(Parameter::Sin11, &flat(&harmonics.sin))?;
-            5
+            let rows = |rows: &[[f64; 3]]| {
+                let (few, beyond) = rows.split_at(HARMONICS);
+                let fits = beyond.iter().all(|row| *row == [0.0; 3]);
+                fits.then(|| std::array::from_fn(|index| few[index / 3][index % 3]))
+                    .ok_or_else(|| HilError::Unsupported(format!("the curve has more than {HARMONICS} harmonics")))
+            };
+            one(all, parameter!("PATH_KIND"), f64::from(Shape::Fourier as u8))?;
+            run_of(all, run!("PATH_CTR_1" to "PATH_CTR_3"), harmonics.center)?;
+            run_of(all, run!("PATH_NRM_1" to "PATH_NRM_3"), harmonics.reference)?;
+            run_of::<24>(all, run!("FOU_C1_1" to "FOU_C8_3"), rows(&harmonics.cos)?)?;
+            run_of::<24>(all, run!("FOU_S1_1" to "FOU_S8_3"), rows(&harmonics.sin)?)?;
         }
-        CurveSpec::Implicit(_) => return unsupported("a curve by formula"),
+        CurveSpec::Implicit(_) => return formula("a curve"),
+    }
+    let speed = match path.speed {
+        SpeedSpec::Constant(speed) => [speed, 0.0],
+        SpeedSpec::CurvatureLimited { max, acceleration } => [max, acceleration],
+        SpeedSpec::Formula(_) => return formula("a speed"),
     };
-    set(Parameter::PathKind, &[kind as f32])?;
-    match &path.speed {
-        SpeedSpec::Constant(speed) => set(Parameter::PathSpeed, &[f(speed), 0.0])?,
-        SpeedSpec::CurvatureLimited { max, acceleration } => set(Parameter::PathSpeed, &[max, acceleration].map(f))?,
-        SpeedSpec::Formula(_) => return unsupported("a speed by formula"),
-    }
-    match &path.yaw {
-        YawSpec::Fixed(yaw) => set(Parameter::PathYawKind, &[0.0, f(yaw)]),
-        YawSpec::Tangent => set(Parameter::PathYawKind, &[1.0]),
-        YawSpec::PointingAt { target: [x, y] } => {
-            set(Parameter::PathYawKind, &[2.0])?;
-            set(Parameter::PathYawX, &[f(x), f(y)])
-        }
-        YawSpec::Formula(_) => unsupported("a yaw by formula"),
-    }
+    run_of(all, run!("PATH_SPEED" to "PATH_ACC"), speed)?;
+    let (kind, yaw, [x, y]) = match path.yaw {
+        YawSpec::Fixed(yaw) => (0.0, yaw, [0.0; 2]),
+        YawSpec::Tangent => (1.0, 0.0, [0.0; 2]),
+        YawSpec::PointingAt { target } => (2.0, 0.0, target),
+        YawSpec::Formula(_) => return formula("a yaw"),
+    };
+    run_of(all, run!("PATH_YAW_KIND" to "PATH_YAW_Y"), [kind, yaw, x, y])
+}
+
+fn one(all: &mut Parameters<f64>, parameter: Parameter, value: f64) -> Result<(), HilError> {
+    all.set(parameter, value).map_err(unsupported)
+}
+
+fn run_of<const N: usize>(all: &mut Parameters<f64>, run: Run<N>, values: [f64; N]) -> Result<(), HilError> {
+    all.set_run(run, values).map_err(unsupported)
+}
+
+fn unsupported(refused: Refused<f64>) -> HilError {
+    HilError::Unsupported(refused.to_string())
 }

@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use autopilot::{Parameter, Parameters};
+use autopilot::{Setting, Settings};
 use controller::flight::envelope::Margins;
 use controller::{Command, Mode, State, Vector3};
 use link::MavMessage;
 use link::dialect::*;
+use rig::{Refused, parameter, run};
 
 use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
@@ -122,15 +123,16 @@ impl Target {
             Law::Track { reference, .. } => reference.rate,
             Law::Follow { .. } => 0.0,
         };
-        let mut parameters = super::parameters(&scenario.controller)?;
+        let parameters = super::parameters(&scenario.controller)?.cast::<f32>();
+        self.limits = (parameters.get(parameter!("LIM_T_MAX")), parameters.run(run!("LIM_TAU_1" to "LIM_TAU_3")));
+        let mut settings = Settings::from(parameters);
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
-        parameters.set(Parameter::Simulate, simulate);
+        let unsupported = |refused: Refused<f32>| HilError::Unsupported(refused.to_string());
+        settings.set(Setting::DRIVE, simulate).map_err(unsupported)?;
         // With the states that ask for it.
-        parameters.set(Parameter::TelemetryEvery, 0.0);
-        let torques = [Parameter::TorqueMax1, Parameter::TorqueMax2, Parameter::TorqueMax3];
-        self.limits = (parameters.get(Parameter::ThrustMax), torques.map(|axis| parameters.get(axis)));
+        settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
         self.arm(false)?;
-        self.configure(&parameters)?;
+        self.configure(&settings)?;
         self.arm(true)?;
         (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
         (self.zeta, self.start, self.command) = ([0.0; 4], None, None);
@@ -180,10 +182,10 @@ impl Target {
         Err(HilError::Parameter { name: name.to_owned(), wanted: value, kept, reason })
     }
 
-    fn configure(&mut self, parameters: &Parameters) -> Result<(), HilError> {
-        for (entry, value) in parameters.iter() {
+    fn configure(&mut self, settings: &Settings) -> Result<(), HilError> {
+        for (entry, value) in settings.iter() {
             if entry.min < entry.max {
-                self.set_parameter(entry.name, value)?;
+                self.set_parameter(entry.name.as_str(), value)?;
             }
         }
         Ok(())

@@ -1,11 +1,12 @@
 //! The fields of a path's description, and their way into a validated [`PathSpec`].
 
 use controller::path::Harmonics;
+use rig::{Field, Parameters, Shape, parameter};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny};
+use std::collections::BTreeMap;
 
-use super::curve::Surfaces;
-use super::{CurveSpec, HARMONICS, PathSpec, SpeedSpec, YawSpec};
+use super::{CurveSpec, HARMONICS, PathSpec, SpeedSpec, Surfaces, YawSpec};
 use crate::describe::formula::{Constants, Formula};
 use crate::describe::input::{Invalid, all_within, join, read, within};
 
@@ -13,8 +14,6 @@ use crate::describe::input::{Invalid, all_within, join, read, within};
 pub(crate) const SPEED_LIMIT: f64 = 1e3;
 /// Largest yaw given as a number, rad: any representative of an angle, but no mistake.
 const YAW_LIMIT: f64 = 100.0;
-/// Half axes of the built-in curves, m, as the controller has them.
-const KINDS: &str = "circle, ellipse, bent, superellipse, tilted, implicit, fourier";
 
 /// The fields that every kind of path has.
 #[derive(Deserialize)]
@@ -56,9 +55,9 @@ struct LineFields {
     y: f64,
 }
 
-/// A kind's own fields; the common ones are read apart.
+/// The own fields of a kind that is not one of the controller's; the common ones are read apart.
 macro_rules! own_fields {
-    ($name:ident { $($(#[$attribute:meta])* $field:ident: $type:ty),* $(,)? }) => {
+    ($name:ident { $($field:ident: $type:ty),* $(,)? }) => {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields)]
         struct $name {
@@ -70,22 +69,10 @@ macro_rules! own_fields {
             _yaw: Option<IgnoredAny>,
             #[serde(rename = "constants")]
             _constants: Option<IgnoredAny>,
-            $($(#[$attribute])* $field: $type,)*
+            $($field: $type,)*
         }
     };
 }
-own_fields!(CircleFields { radius: f64, p3: f64 });
-own_fields!(EllipseFields { a: f64, b: f64, c0: f64, c1: f64 });
-own_fields!(BentFields { a: f64, b: f64, c0: f64, v0: Option<f64>, v1: Option<f64> });
-own_fields!(SuperellipseFields {
-    a: f64,
-    b: f64,
-    half_exponent: u8,
-    c0: f64,
-    #[serde(default)]
-    c1: f64
-});
-own_fields!(TiltedFields { center: [f64; 3], normal: [f64; 3], major: [f64; 3], a: f64, b: f64 });
 own_fields!(ImplicitFields { h1: String, h2: String });
 own_fields!(FourierFields { center: [f64; 3], cos: Vec<[f64; 3]>, sin: Vec<[f64; 3]>, reference: [f64; 3] });
 
@@ -103,46 +90,119 @@ pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Resu
     };
     let mut speed = speed.map(|speed| speed_of(at, speed, parse)).transpose()?;
     let mut yaw = yaw.map(|yaw| yaw_of(at, yaw, parse)).transpose()?;
-    let curve = match kind.as_str() {
-        "circle" => {
-            let CircleFields { radius, p3, .. } = read(at, value)?;
-            CurveSpec::Circle { radius, p3 }
-        }
-        "ellipse" => {
-            let EllipseFields { a, b, c0, c1, .. } = read(at, value)?;
-            yaw.get_or_insert(YawSpec::Tangent);
-            CurveSpec::Ellipse { a, b, c0, c1 }
-        }
-        "bent" => {
-            let BentFields { a, b, c0, v0, v1, .. } = read(at, value)?;
-            match (&speed, v0, v1) {
-                (None, Some(v0), Some(v1)) => speed = Some(linear_speed(at, v0, v1, a)?),
-                (Some(_), None, None) => {}
-                _ => return Err(Invalid::new(join(at, "speed"), "give either speed, or v0 and v1")),
-            }
-            if yaw.is_none() {
-                yaw = Some(YawSpec::Formula(parse("yaw", "0.2*x")?));
-            }
-            CurveSpec::Bent { a, b, c0 }
-        }
-        "superellipse" => {
-            let SuperellipseFields { a, b, half_exponent, c0, c1, .. } = read(at, value)?;
-            CurveSpec::Superellipse { a, b, half_exponent, c0, c1 }
-        }
-        "tilted" => {
-            let TiltedFields { center, normal, major, a, b, .. } = read(at, value)?;
-            CurveSpec::Tilted { center, normal, major, a, b }
-        }
-        "implicit" => {
+    let curve = match (kind.as_str(), Shape::named(&kind)) {
+        ("implicit", _) => {
             let ImplicitFields { h1, h2, .. } = read(at, value)?;
             CurveSpec::Implicit(Surfaces { h1: parse("h1", &h1)?, h2: parse("h2", &h2)? })
         }
-        "fourier" => CurveSpec::Fourier(Box::new(harmonics(at, read(at, value)?)?)),
-        other => return Err(Invalid::new(join(at, "kind"), format_args!("no path of kind \"{other}\": {KINDS}"))),
+        ("fourier", _) => CurveSpec::Fourier(Box::new(harmonics(at, read(at, value)?)?)),
+        (_, Some(shape)) => {
+            let numbers = Numbers::read(at, shape, value)?;
+            if shape == Shape::Bent {
+                match (&speed, numbers.extra("v0")?, numbers.extra("v1")?) {
+                    (None, Some(v0), Some(v1)) => {
+                        speed = Some(linear_speed(at, v0, v1, numbers.parameters.get(parameter!("PATH_A")))?);
+                    }
+                    (Some(_), None, None) => {}
+                    _ => return Err(Invalid::new(join(at, "speed"), "give either speed, or v0 and v1")),
+                }
+                if yaw.is_none() {
+                    yaw = Some(YawSpec::Formula(parse("yaw", "0.2*x")?));
+                }
+            }
+            if shape == Shape::Ellipse {
+                yaw.get_or_insert(YawSpec::Tangent);
+            }
+            CurveSpec::Numbers(Box::new(numbers.parameters))
+        }
+        (other, None) => {
+            let kinds = Shape::NAMES.join(", ");
+            let message = format_args!("no path of kind \"{other}\": {kinds}, implicit");
+            return Err(Invalid::new(join(at, "kind"), message));
+        }
     };
     let speed = speed.ok_or_else(|| Invalid::new(join(at, "speed"), "missing"))?;
     let yaw = yaw.unwrap_or(YawSpec::Fixed(0.0));
     PathSpec::new(curve, speed, yaw).map_err(|error| Invalid::out_of_range(at, error))
+}
+
+/// What is given for a field of a curve.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Given {
+    Number(f64),
+    Numbers(Vec<f64>),
+    Else(IgnoredAny),
+}
+
+/// The numbers of one of the controller's curves, and what else was given.
+struct Numbers {
+    at: String,
+    given: BTreeMap<String, Given>,
+    parameters: Parameters<f64>,
+}
+
+impl Numbers {
+    /// Reads the fields of `shape`.
+    fn read<'de, V: Deserializer<'de>>(at: &str, shape: Shape, value: V) -> Result<Self, Invalid> {
+        // Of all kinds, and of the bent curve's speed.
+        let common = ["kind", "speed", "yaw", "constants"].iter().chain(if shape == Shape::Bent {
+            &["v0", "v1"][..]
+        } else {
+            &[]
+        });
+        let known: Vec<&str> = shape.fields().iter().map(|field| field.name).chain(common.copied()).collect();
+        let given: BTreeMap<String, Given> = read(at, value)?;
+        if let Some(unknown) = given.keys().find(|name| !known.contains(&name.as_str())) {
+            let message = format_args!("unknown field `{unknown}`, expected one of {}", quoted(&known));
+            return Err(Invalid::new(join(at, unknown), message));
+        }
+        let is_missing = |field: &&Field| !field.optional && !given.contains_key(field.name);
+        let missing: Vec<&str> = shape.fields().iter().filter(is_missing).map(|field| field.name).collect();
+        if !missing.is_empty() {
+            let fields = if missing.len() == 1 { "field" } else { "fields" };
+            return Err(Invalid::new(at, format_args!("missing {fields} {}", quoted(&missing))));
+        }
+        let mut parameters = Parameters::default();
+        let set = |parameters: &mut Parameters<f64>, parameter, field: &str, value| {
+            parameters.set(parameter, value).map_err(|refused| Invalid::refused(join(at, field), refused))
+        };
+        set(&mut parameters, parameter!("PATH_KIND"), "kind", shape as usize as f64)?;
+        for field in shape.fields() {
+            match given.get(field.name) {
+                None => {}
+                Some(Given::Number(number)) if field.count == 1 => {
+                    for parameter in field.parameters() {
+                        set(&mut parameters, parameter, field.name, *number)?;
+                    }
+                }
+                Some(Given::Numbers(numbers)) if field.count == numbers.len() => {
+                    for (index, (parameter, number)) in field.parameters().zip(numbers).enumerate() {
+                        set(&mut parameters, parameter, &format!("{}[{index}]", field.name), *number)?;
+                    }
+                }
+                Some(_) if field.count == 1 => return Err(Invalid::new(join(at, field.name), "not a number")),
+                Some(_) => {
+                    return Err(Invalid::new(join(at, field.name), format_args!("not {} numbers", field.count)));
+                }
+            }
+        }
+        Ok(Self { at: at.to_owned(), given, parameters })
+    }
+
+    /// A number that is not one of the curve's own.
+    fn extra(&self, name: &str) -> Result<Option<f64>, Invalid> {
+        match self.given.get(name) {
+            None => Ok(None),
+            Some(Given::Number(number)) => Ok(Some(*number)),
+            Some(_) => Err(Invalid::new(join(&self.at, name), "not a number")),
+        }
+    }
+}
+
+/// Names as a sentence lists them.
+fn quoted(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 
 fn speed_of(

@@ -2,15 +2,10 @@
 //!
 //! [`parse_path`] is the one place where a description, from a scenario file or from a line of JSON, becomes a path.
 //!
-//! | `kind` | fields |
-//! |---|---|
-//! | `"circle"` | `radius`, `p3`: the paper's |
-//! | `"ellipse"` | `a`, `b`, `c0`, `c1`; `yaw` along the tangent if left out |
-//! | `"bent"` | `a`, `b`, `c0`; `v0`, `v1` for the speed v0 + v1 p1/a; yaw 0.2 p1 if left out |
-//! | `"superellipse"` | `a`, `b`, `half_exponent`, `c0`, `c1` |
-//! | `"tilted"` | `center`, `normal`, `major`, `a`, `b`: an ellipse in any plane |
-//! | `"fourier"` | `center`, `cos`, `sin`, `reference`: as `hil-sim fit` writes them |
-//! | `"implicit"` | `h1`, `h2`: [formulas](crate::describe::formula) |
+//! `kind` is one of the controller's curves, with the fields that [`Shape::fields`] gives it; or `"fourier"`, with `center`, `cos`, `sin`
+//! and `reference` as `hil-sim fit` writes them; or `"implicit"`, with the [formulas](crate::describe::formula) `h1` and `h2`. The yaw of an
+//! `"ellipse"` is along the tangent if it is left out. `"bent"` takes `v0` and `v1` for the speed v0 + v1 p1/a, and has the yaw 0.2 p1 if
+//! that is left out.
 //!
 //! `speed` (m/s along ρ) is a number, a formula, or `{ max = 3.0, acceleration = 1.0 }`, slower where the curve bends. `yaw` (rad)
 //! is a number (0 if left out), a formula, `"tangent"`, or `{ x = 0.0, y = 0.0 }`, nose to a vertical line. `constants` names
@@ -21,20 +16,22 @@ mod fields;
 mod profile;
 mod witnessed;
 
-pub use curve::{AnyCurve, CurveSpec, HARMONICS};
+pub use curve::{CurveSpec, HARMONICS, Surfaces};
 pub use fields::parse_path;
-pub use profile::{AnySpeed, AnyYaw, SpeedSpec, YawSpec};
+pub use profile::{SpeedSpec, YawSpec};
 
 use controller::path::Profiled;
 use controller::{OutOfRange, Path, Real, Vector3, Vehicle};
+use rig::{AnyPath, Shape, parameter};
 use std::sync::OnceLock;
 
+use crate::describe::formula::Formula;
 use crate::study::check::{self, Lap, Limits, Refusal, Report, Steady};
 use witness::law::{Evaluation, Operating, OutputGains, Singular};
 use witness::plant::distance_to_circle;
 
 /// A path of any kind, chosen at run time, as the law takes it.
-pub type Route<T> = Profiled<AnyCurve<T>, AnySpeed<T>, AnyYaw<T>>;
+pub type Route<T> = AnyPath<T, Surfaces, Formula, HARMONICS>;
 
 /// A path as described by a user, validated.
 #[derive(Clone, Debug)]
@@ -77,8 +74,10 @@ impl PathSpec {
     /// Radius (m), p3 (m) and speed (m/s along ρ) of the paper's circle at constant speed.
     #[must_use]
     pub fn circle(&self) -> Option<[f64; 3]> {
-        match (&self.curve, &self.speed) {
-            (CurveSpec::Circle { radius, p3 }, SpeedSpec::Constant(speed)) => Some([*radius, *p3, *speed]),
+        match (self.curve.shape()?, &self.speed) {
+            ((Shape::Circle, number), SpeedSpec::Constant(speed)) => {
+                Some([number(parameter!("PATH_RADIUS")), number(parameter!("PATH_P3")), *speed])
+            }
             _ => None,
         }
     }
@@ -122,16 +121,13 @@ impl PathSpec {
         Ok(path)
     }
 
-    /// A point on or near the curve.
-    fn hint(&self) -> Vector3<f64> {
-        self.curve.hint()
-    }
-
     /// d_C, m: distance of a point of N from the curve; NaN where it is no curve.
     #[must_use]
     pub fn distance(&self, position: [f64; 3]) -> f64 {
-        match &self.curve {
-            CurveSpec::Circle { radius, p3 } => distance_to_circle(position, *radius, *p3),
+        match self.curve.shape() {
+            Some((Shape::Circle, number)) => {
+                distance_to_circle(position, number(parameter!("PATH_RADIUS")), number(parameter!("PATH_P3")))
+            }
             _ => self.lap().map_or(f64::NAN, |lap| lap.nearest(Vector3::from(position)).distance),
         }
     }

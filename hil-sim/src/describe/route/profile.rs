@@ -1,13 +1,11 @@
-//! Speeds and yaws of any kind, chosen at run time.
+//! Speeds and yaws as described by a user.
 
-use controller::law::lift::PositionSeries;
 use controller::path::{
-    AlongTangent, ConstantSpeed, CurvatureLimited, FixedYaw, Formula as OfPosition, Located, PointingAt, ScalarField,
-    SpeedProfile, YawProfile,
+    AlongTangent, ConstantSpeed, CurvatureLimited, FixedYaw, Formula as OfPosition, PointingAt, ScalarField,
 };
-use controller::{Analytic, OutOfRange, Real, Series};
+use controller::{Analytic, OutOfRange, Real};
+use rig::{AnySpeed, AnyYaw};
 
-use super::AnyCurve;
 use crate::describe::formula::Formula;
 
 /// v_d as described by a user, m/s along ρ.
@@ -48,27 +46,8 @@ impl<T: Real> ScalarField<T> for Formula {
     }
 }
 
-/// v_d of any kind, as the law takes it.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)]
-pub enum AnySpeed<T> {
-    Constant(ConstantSpeed<T>),
-    Formula(OfPosition<Formula>),
-    CurvatureLimited(CurvatureLimited<T>),
-}
-
-/// ψ_d of any kind, as the law takes it.
-#[derive(Clone, Debug)]
-#[allow(missing_docs)]
-pub enum AnyYaw<T> {
-    Fixed(FixedYaw<T>),
-    Tangent(AlongTangent),
-    Formula(OfPosition<Formula>),
-    PointingAt(OfPosition<PointingAt<T>>),
-}
-
 impl SpeedSpec {
-    pub(super) fn build<T: Real>(&self) -> Result<AnySpeed<T>, OutOfRange<T>> {
+    pub(super) fn build<T: Real>(&self) -> Result<AnySpeed<T, Formula>, OutOfRange<T>> {
         Ok(match self {
             Self::Constant(speed) => AnySpeed::Constant(ConstantSpeed(T::lit(*speed))),
             Self::Formula(formula) => AnySpeed::Formula(OfPosition(formula.clone())),
@@ -80,7 +59,7 @@ impl SpeedSpec {
 }
 
 impl YawSpec {
-    pub(super) fn build<T: Real>(&self) -> AnyYaw<T> {
+    pub(super) fn build<T: Real>(&self) -> AnyYaw<T, Formula> {
         match self {
             Self::Fixed(yaw) => AnyYaw::Fixed(FixedYaw(T::lit(*yaw))),
             Self::Tangent => AnyYaw::Tangent(AlongTangent),
@@ -88,29 +67,6 @@ impl YawSpec {
             Self::PointingAt { target: [x, y] } => {
                 AnyYaw::PointingAt(OfPosition(PointingAt { x: T::lit(*x), y: T::lit(*y) }))
             }
-        }
-    }
-}
-
-impl<T: Real> SpeedProfile<T, AnyCurve<T>> for AnySpeed<T> {
-    #[inline]
-    fn speed(&self, curve: &AnyCurve<T>, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
-        match self {
-            Self::Constant(speed) => speed.speed(curve, position, located),
-            Self::Formula(speed) => speed.speed(curve, position, located),
-            Self::CurvatureLimited(speed) => speed.speed(curve, position, located),
-        }
-    }
-}
-
-impl<T: Real> YawProfile<T> for AnyYaw<T> {
-    #[inline]
-    fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3> {
-        match self {
-            Self::Fixed(yaw) => yaw.yaw(position, located),
-            Self::Tangent(yaw) => yaw.yaw(position, located),
-            Self::Formula(yaw) => yaw.yaw(position, located),
-            Self::PointingAt(yaw) => yaw.yaw(position, located),
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The same paths for the witness, by formulas that it differentiates itself.
 
 use super::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
+use controller::Vector3;
 use controller::path::Harmonics;
+use rig::{Parameters, Shape, parameter, run};
 use witness::jet::{Dual, Scalar, cross, dot, scale};
 use witness::law::WitnessPath;
 
@@ -11,25 +13,8 @@ const DOUBLINGS: usize = 4;
 
 impl WitnessPath for PathSpec {
     fn surfaces<S: Scalar>(&self, p: [S; 3]) -> [S; 2] {
-        let [x, y, z] = p;
         match &self.curve {
-            CurveSpec::Circle { radius, p3 } => [x * x + y * y - radius * radius, z - *p3],
-            CurveSpec::Ellipse { a, b, c0, c1 } => [(x / *a).powi(2) + (y / *b).powi(2) - 1.0, z - *c0 - x * *c1],
-            CurveSpec::Bent { a, b, c0 } => {
-                [(x / *a).powi(4) + (y / *b).powi(4) - 1.0, z - *c0 - (x * 0.5).sin() * 0.5]
-            }
-            CurveSpec::Superellipse { a, b, half_exponent, c0, c1 } => {
-                let n = 2 * i32::from(*half_exponent);
-                [(x / *a).powi(n) + (y / *b).powi(n) - 1.0, z - *c0 - x * *c1]
-            }
-            CurveSpec::Tilted { center, normal, major, a, b } => {
-                let n = unit(*normal);
-                let e2 = unit(cross(n, *major));
-                let e1 = cross(e2, n);
-                let offset: [S; 3] = std::array::from_fn(|axis| p[axis] - center[axis]);
-                let along = |e: [f64; 3]| offset[0] * e[0] + offset[1] * e[1] + offset[2] * e[2];
-                [(along(e1) / *a).powi(2) + (along(e2) / *b).powi(2) - 1.0, -along(n)]
-            }
+            CurveSpec::Numbers(parameters) => shaped(parameters, p),
             CurveSpec::Implicit(surfaces) => [surfaces.h1.evaluate(p), surfaces.h2.evaluate(p)],
             CurveSpec::Fourier(harmonics) => normal_coordinates(harmonics, p),
         }
@@ -56,11 +41,8 @@ impl WitnessPath for PathSpec {
     }
 
     fn direction(&self) -> f64 {
-        match self.curve {
-            // (16) as printed runs against (3).
-            CurveSpec::Circle { .. } => -1.0,
-            _ => 1.0,
-        }
+        // (16) as printed runs against (3).
+        if matches!(self.curve.shape(), Some((Shape::Circle, _))) { -1.0 } else { 1.0 }
     }
 
     fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
@@ -74,12 +56,77 @@ impl WitnessPath for PathSpec {
     }
 }
 
+/// h1 and h2 of the controller's curves, as their documentation states them.
+fn shaped<S: Scalar>(parameters: &Parameters<f64>, p: [S; 3]) -> [S; 2] {
+    let [x, y, z] = p;
+    let [a, b, c0, c1] = parameters.run(run!("PATH_A" to "PATH_C1"));
+    match Shape::of(parameters) {
+        Shape::Circle => {
+            let [radius, p3] = parameters.run(run!("PATH_RADIUS" to "PATH_P3"));
+            [x * x + y * y - radius * radius, z - p3]
+        }
+        Shape::Ellipse => [(x / a).powi(2) + (y / b).powi(2) - 1.0, z - c0 - x * c1],
+        Shape::Bent => [(x / a).powi(4) + (y / b).powi(4) - 1.0, z - c0 - (x * 0.5).sin() * 0.5],
+        Shape::Superellipse => {
+            let n = 2 * i32::from(parameters.whole(parameter!("PATH_EXP2")));
+            [(x / a).powi(n) + (y / b).powi(n) - 1.0, z - c0 - x * c1]
+        }
+        Shape::Tilted => {
+            let Plane { center, e1, e2, n } = Plane::of(parameters);
+            let offset: [S; 3] = std::array::from_fn(|axis| p[axis] - center[axis]);
+            let along = |e: [f64; 3]| offset[0] * e[0] + offset[1] * e[1] + offset[2] * e[2];
+            [(along(e1) / a).powi(2) + (along(e2) / b).powi(2) - 1.0, -along(n)]
+        }
+        Shape::Fourier => unreachable!("a Fourier series is a curve of its own here"),
+    }
+}
+
+/// A point on or near the curve, in N, m.
+fn hint(parameters: &Parameters<f64>) -> [f64; 3] {
+    let [a, _, c0, _] = parameters.run(run!("PATH_A" to "PATH_C1"));
+    match Shape::of(parameters) {
+        Shape::Circle => [parameters.get(parameter!("PATH_RADIUS")), 0.0, parameters.get(parameter!("PATH_P3"))],
+        Shape::Ellipse | Shape::Bent | Shape::Superellipse => [a, 0.0, c0],
+        Shape::Tilted => {
+            let Plane { center, e1, .. } = Plane::of(parameters);
+            std::array::from_fn(|axis| center[axis] + a * e1[axis])
+        }
+        Shape::Fourier => unreachable!("a Fourier series is a curve of its own here"),
+    }
+}
+
+/// The plane of a tilted curve: its centre and axes, n = e1 × e2.
+struct Plane {
+    center: [f64; 3],
+    e1: [f64; 3],
+    e2: [f64; 3],
+    n: [f64; 3],
+}
+
+impl Plane {
+    fn of(parameters: &Parameters<f64>) -> Self {
+        let n = unit(parameters.run(run!("PATH_NRM_1" to "PATH_NRM_3")));
+        let e2 = unit(cross(n, parameters.run(run!("PATH_MAJ_1" to "PATH_MAJ_3"))));
+        let center = parameters.run(run!("PATH_CTR_1" to "PATH_CTR_3"));
+        Self { center, e1: cross(e2, n), e2, n }
+    }
+}
+
 /// v/|v|.
 fn unit<S: Scalar>(v: [S; 3]) -> [S; 3] {
     scale(v, S::constant(1.0) / dot(v, v).sqrt())
 }
 
 impl PathSpec {
+    /// A point on or near the curve, in N, m.
+    pub(super) fn hint(&self) -> Vector3<f64> {
+        match &self.curve {
+            CurveSpec::Numbers(parameters) => Vector3::from(hint(parameters)),
+            CurveSpec::Implicit(_) => Vector3::zeros(),
+            CurveSpec::Fourier(harmonics) => harmonics.point(0.0),
+        }
+    }
+
     /// |dρ/ds|² along ρ, of the curve of constant (h1, h2) through `p`; of a Fourier curve itself, at the point nearest to `p`.
     fn curvature_squared<S: Scalar>(&self, p: [S; 3]) -> S {
         if let CurveSpec::Fourier(harmonics) = &self.curve {

@@ -1,17 +1,17 @@
 //! Rotors as the parameters describe them.
 
-use autopilot::{Actuators, Parameter, Parameters};
 use controller::{Actuation, Command, Vector3};
+use rig::{Actuators, Parameters, parameter};
 
 /// Thrust and torque of four duties: the geometry taken forwards.
-fn together(parameters: &Parameters, duties: [f32; 4]) -> Command<f32> {
+fn together(parameters: &Parameters<f32>, duties: [f32; 4]) -> Command<f32> {
     let get = |parameter| parameters.get(parameter);
-    let (arm, drag) = (get(Parameter::RotorArm), get(Parameter::RotorTorque) / get(Parameter::RotorThrust));
+    let (arm, drag) = (get(parameter!("ROT_ARM")), get(parameter!("ROT_KQ")) / get(parameter!("ROT_KT")));
     // Front right, rear left, front left, rear right; the first two turn counter-clockwise.
     let places = [[arm, arm], [-arm, -arm], [arm, -arm], [-arm, arm]];
     let mut sum = Command::zero();
     for ((duty, [x, y]), spin) in duties.into_iter().zip(places).zip([1.0, 1.0, -1.0, -1.0]) {
-        let force = get(Parameter::RotorThrust) * (get(Parameter::RotorSpeedMax) * duty).powi(2);
+        let force = get(parameter!("ROT_KT")) * (get(parameter!("ROT_W_MAX")) * duty).powi(2);
         sum.thrust += force;
         sum.torque += Vector3::new(x, y, 0.0).cross(&Vector3::new(0.0, 0.0, -force))
             + Vector3::new(0.0, 0.0, spin * drag * force);
@@ -25,7 +25,7 @@ fn distance(a: &Command<f32>, b: &Command<f32>) -> f32 {
 
 #[test]
 fn what_the_rotors_have_is_given_bit_for_bit() {
-    let parameters = Parameters::default();
+    let parameters = Parameters::<f32>::default();
     let actuators = Actuators::new(&parameters).unwrap();
     let wanted = Command { thrust: 30.0, torque: Vector3::new(0.5, -0.7, 0.2) };
     assert_eq!(actuators.apply(&wanted), wanted);
@@ -35,7 +35,7 @@ fn what_the_rotors_have_is_given_bit_for_bit() {
 
 #[test]
 fn yaw_gives_way_first_then_thrust() {
-    let parameters = Parameters::default();
+    let parameters = Parameters::<f32>::default();
     let actuators = Actuators::new(&parameters).unwrap();
     let (thrust, roll) = (59.0, 3.0);
     let wanted = Command { thrust, torque: Vector3::new(roll, 0.0, 1.0) };
@@ -51,10 +51,10 @@ fn yaw_gives_way_first_then_thrust() {
 
 #[test]
 fn nothing_at_all_stops_the_rotors_that_the_least_thrust_lets_idle() {
-    let parameters = Parameters::default();
+    let parameters = Parameters::<f32>::default();
     let actuators = Actuators::new(&parameters).unwrap();
     assert_eq!(actuators.duties(&Command::zero()), [0.0; 4]);
     let idle = Command { thrust: actuators.least_thrust(), torque: Vector3::zeros() };
-    let least = parameters.get(Parameter::RotorSpeedMin) / parameters.get(Parameter::RotorSpeedMax);
+    let least = parameters.get(parameter!("ROT_W_MIN")) / parameters.get(parameter!("ROT_W_MAX"));
     assert!(actuators.duties(&idle).iter().all(|duty| (duty - least).abs() < 1e-6));
 }

@@ -1,9 +1,10 @@
 //! An autopilot with a link's other end: what is sent to it, and what it says.
 
-use autopilot::{Answer, Autopilot, Boot, Next, Parameter, Parameters, Server};
+use autopilot::{Answer, Autopilot, Boot, Next, Server, Setting, Settings};
 use controller::{Request, State, Vector3};
 use link::dialect::*;
 use link::{Decoder, Encoder, MavMessage, state_frame};
+use rig::{Parameter, parameter};
 
 /// At rest, 1 m outside the default circle.
 pub fn start() -> State<f32> {
@@ -22,8 +23,13 @@ pub fn frame(sequence: u32) -> LOAD_STATE_DATA {
 /// Not armed, in a drive.
 pub fn driven(simulate: f32) -> Autopilot {
     let mut autopilot = Autopilot::new(Boot::default());
-    autopilot.parameters_mut().unwrap().set(Parameter::Simulate, simulate);
+    autopilot.settings_mut().unwrap().set(Setting::DRIVE, simulate).unwrap();
     autopilot
+}
+
+/// Sets one of the controller's parameters.
+pub fn set(autopilot: &mut Autopilot, parameter: Parameter, value: f32) {
+    autopilot.settings_mut().unwrap().rig_mut().set(parameter, value).unwrap();
 }
 
 /// Armed to take over in flight and follow the path.
@@ -44,13 +50,13 @@ pub fn fly(autopilot: &mut Autopilot, sequence: u32) -> Answer {
     autopilot.tick()
 }
 
-/// Finite, and what four rotors of `parameters` can give.
-pub fn is_flyable(answer: &Answer, parameters: &Parameters) -> bool {
+/// Finite, and what four rotors of `settings` can give.
+pub fn is_flyable(answer: &Answer, settings: &Settings) -> bool {
     let command = &answer.command;
-    let get = |parameter| parameters.get(parameter);
+    let get = |parameter| settings.rig().get(parameter);
     // A float's rounding more.
-    let most = 4.0 * get(Parameter::RotorThrust) * get(Parameter::RotorSpeedMax).powi(2) * 1.000_01;
-    let torques = [Parameter::TorqueMax1, Parameter::TorqueMax2, Parameter::TorqueMax3];
+    let most = 4.0 * get(parameter!("ROT_KT")) * get(parameter!("ROT_W_MAX")).powi(2) * 1.000_01;
+    let torques = [parameter!("LIM_TAU_1"), parameter!("LIM_TAU_2"), parameter!("LIM_TAU_3")];
     let telemetry = answer.telemetry.as_ref().is_none_or(|t| {
         let scalars =
             [t.q3, t.q_b3, t.specific_force, t.kappa, t.path_det, t.reach, t.cos_phi_squared, t.payload_mass];
@@ -65,14 +71,14 @@ pub fn is_flyable(answer: &Answer, parameters: &Parameters) -> bool {
 }
 
 /// Both ends, joined by bytes.
-pub struct Rig {
+pub struct Station {
     pub autopilot: Autopilot,
     server: Server,
     decoder: Decoder,
     encoder: Encoder,
 }
 
-impl Rig {
+impl Station {
     pub fn new(autopilot: Autopilot) -> Self {
         Self { autopilot, server: Server::new(), decoder: Decoder::new(), encoder: Encoder::new(link::STATION) }
     }

@@ -1,63 +1,68 @@
 //! The tracking law and the least guard that it can fly with: a good state and a finite answer, or the policy's command without either.
 
 use controller::{
-    Actuation, Command, Fault, Lost, Mode, Reference, SetupError, Solution, State, TrackXi, Tracker, Vector3, Vehicle,
+    Actuation, Command, Fault, Lost, Mode, Real, Reference, Solution, State, TrackXi, Tracker, Vector3, Vehicle,
 };
 
-use crate::parameters::{Parameter, Parameters};
-use crate::rotors::Actuators;
-use crate::setup;
+use crate::actuators::Actuators;
+use crate::parameters::Parameters;
+use crate::{flight, gains, observer, parameter, timing, vehicle};
 
 /// A step of the tracking law, guarded.
-pub struct Tracked {
-    pub command: Command<f32>,
+pub struct Tracked<T> {
+    pub command: Command<T>,
     pub fault: Option<Fault>,
-    pub solution: Option<Solution<f32, TrackXi<f32>>>,
 }
 
 /// Trajectory tracking of a circle.
 #[derive(Clone, Debug)]
-pub struct Tracking {
-    tracker: Tracker<f32>,
+pub struct Tracking<T: Real> {
+    tracker: Tracker<T>,
     /// Radius (m), p3 (m) and rate (rad/s) of the reference.
-    circle: [f32; 3],
-    actuators: Actuators,
-    lost: Lost<f32>,
+    circle: [T; 3],
+    actuators: Actuators<T>,
+    lost: Lost<T>,
     /// Off, follow or fault.
     mode: Mode,
+    solution: Option<Solution<T, TrackXi<T>>>,
     /// Why the fault.
     fault: Option<Fault>,
 }
 
-impl Tracking {
+impl<T: Real> Tracking<T> {
     /// The law of `parameters`, not started.
-    pub fn new(parameters: &Parameters) -> Result<Self, SetupError<f32>> {
+    pub fn new(parameters: &Parameters<T>) -> Result<Self, crate::error::SetupError<T>> {
         let actuators = Actuators::new(parameters)?;
-        let vehicle = setup::vehicle(parameters)?;
-        let tracker = Tracker::new(vehicle, setup::track_gains(parameters), setup::sampling(parameters))?
+        let vehicle = vehicle::vehicle(parameters)?;
+        let tracker = Tracker::new(vehicle, gains::track_gains(parameters), timing::sampling(parameters))?
             .with_limits(actuators.limits())?
-            .with_observer(&setup::observer(parameters))?;
-        let circle = [Parameter::PathRadius, Parameter::PathP3, Parameter::ReferenceRate];
+            .with_observer(&observer::observer(parameters))?;
+        let circle = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
         Ok(Self {
             tracker,
             circle: circle.map(|parameter| parameters.get(parameter)),
             actuators,
-            lost: setup::policy(parameters).lost,
+            lost: flight::policy(parameters).lost,
             mode: Mode::Off,
+            solution: None,
             fault: None,
         })
     }
 
-    pub fn tracker(&self) -> &Tracker<f32> {
+    pub fn tracker(&self) -> &Tracker<T> {
         &self.tracker
     }
 
-    pub fn vehicle(&self) -> &Vehicle<f32> {
+    pub fn vehicle(&self) -> &Vehicle<T> {
         self.tracker.vehicle()
     }
 
-    pub fn actuators(&self) -> &Actuators {
+    pub fn actuators(&self) -> &Actuators<T> {
         &self.actuators
+    }
+
+    pub fn solution(&self) -> Option<&Solution<T, TrackXi<T>>> {
+        self.solution.as_ref()
     }
 
     pub fn mode(&self) -> Mode {
@@ -65,21 +70,22 @@ impl Tracking {
     }
 
     /// Starts from a stated ζ.
-    pub fn start(&mut self, state: &State<f32>, zeta: [f32; 4]) {
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
         self.tracker.start(state, zeta);
         (self.mode, self.fault) = (Mode::Follow, None);
     }
 
     /// Goes on from `applied` without a bump in thrust.
-    pub fn take_over(&mut self, state: &State<f32>, applied: Command<f32>) {
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
         self.tracker.take_over(state, applied);
         (self.mode, self.fault) = (Mode::Follow, None);
     }
 
     /// The command for the coming hold; `phase` (rad) is where the reference is now.
-    pub fn step(&mut self, state: &State<f32>, phase: f32) -> Tracked {
+    pub fn step(&mut self, state: &State<T>, phase: T) -> Tracked<T> {
+        self.solution = None;
         if self.mode == Mode::Off {
-            return Tracked { command: Command::zero(), fault: None, solution: None };
+            return Tracked { command: Command::zero(), fault: None };
         }
         if let Err(channel) = state.check() {
             return self.without(Some(Fault::State(channel)));
@@ -97,16 +103,17 @@ impl Tracking {
         if !(solution.command.is_finite() && numbers.all(|number| number.is_finite())) {
             return self.without(Some(Fault::NotFinite));
         }
-        Tracked { command: self.actuators.apply(&solution.command), fault: None, solution: Some(solution) }
+        self.solution = Some(solution);
+        Tracked { command: self.actuators.apply(&solution.command), fault: None }
     }
 
     /// The policy's command instead of the law's.
-    fn without(&mut self, fault: Option<Fault>) -> Tracked {
+    fn without(&mut self, fault: Option<Fault>) -> Tracked<T> {
         (self.mode, self.fault) = (Mode::Fault, fault);
-        Tracked { command: self.lost_command(), fault, solution: None }
+        Tracked { command: self.lost_command(), fault }
     }
 
-    fn lost_command(&self) -> Command<f32> {
+    fn lost_command(&self) -> Command<T> {
         match self.lost {
             Lost::Cut => Command::zero(),
             Lost::Sink(share) => {

@@ -1,0 +1,130 @@
+//! `LIM_*`, `ROT_*`: from what the law asks for to what the rotors are told.
+
+use controller::sampled::allocation::Place;
+use controller::{Actuation, ActuatorLimits, Command, OutOfRange, Real, RotorParams, Rotors};
+
+use crate::entry::Entry;
+use crate::parameters::Parameters;
+use crate::{parameter, run};
+
+const TORQUE: (f64, f64) = (0.0, 1e3);
+
+pub(crate) const ENTRIES: &[Entry<f64>] = &[
+    Entry::real(
+        "LIM_T_MIN",
+        "min_thrust",
+        "N",
+        0.0,
+        (0.0, 1e4),
+        "Least thrust that the law may ask for in flight. Roll and pitch may need more or less of it.",
+    ),
+    Entry::real("LIM_T_MAX", "max_thrust", "N", 60.0, (0.1, 1e4), "Largest thrust; likewise."),
+    Entry::real("LIM_TAU_1", "max_torque[0]", "N.m", 3.0, TORQUE, "Largest torque about b1, either way."),
+    Entry::real("LIM_TAU_2", "max_torque[1]", "N.m", 3.0, TORQUE, "Largest torque about b2, either way."),
+    Entry::real("LIM_TAU_3", "max_torque[2]", "N.m", 1.0, TORQUE, "Largest torque about b3, either way."),
+    Entry::real(
+        "ROT_ARM",
+        "arm",
+        "m",
+        0.25,
+        (0.01, 10.0),
+        "A rotor's distance from the axes b1 and b2 (X configuration).",
+    ),
+    Entry::real(
+        "ROT_KT",
+        "thrust_coefficient",
+        "N/(rad/s)^2",
+        2e-5,
+        (1e-10, 1.0),
+        "A rotor's thrust over its speed squared.",
+    ),
+    Entry::real(
+        "ROT_KQ",
+        "torque_coefficient",
+        "N.m/(rad/s)^2",
+        4e-7,
+        (1e-12, 1.0),
+        "A rotor's drag torque over its speed squared.",
+    ),
+    Entry::real("ROT_W_MIN", "min_speed", "rad/s", 100.0, (0.0, 1e5), "Least speed of an armed rotor."),
+    Entry::real(
+        "ROT_W_MAX",
+        "max_speed",
+        "rad/s",
+        1100.0,
+        (1.0, 1e5),
+        "A rotor's speed at full command; at most 0.9 of it may be the least.",
+    ),
+];
+
+/// The limits that the pilot sets, and then four rotors, which have the last word.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Actuators<T> {
+    limits: ActuatorLimits<T>,
+    rotors: Rotors<T, 4>,
+    per_max_speed: T,
+}
+
+impl<T: Real> Actuators<T> {
+    /// As `parameters` describes them.
+    ///
+    /// # Errors
+    /// A limit or a rotor's number is out of range, or the rotors have no room for torque.
+    pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
+        let limits = ActuatorLimits {
+            min_thrust: parameters.get(parameter!("LIM_T_MIN")),
+            max_thrust: parameters.get(parameter!("LIM_T_MAX")),
+            max_torque: parameters.run(run!("LIM_TAU_1" to "LIM_TAU_3")),
+        };
+        limits.check().map_err(parameters.naming("LIM_"))?;
+        let rotor = RotorParams {
+            thrust_coefficient: parameters.get(parameter!("ROT_KT")),
+            torque_coefficient: parameters.get(parameter!("ROT_KQ")),
+            min_speed: parameters.get(parameter!("ROT_W_MIN")),
+            max_speed: parameters.get(parameter!("ROT_W_MAX")),
+        };
+        let arm = parameters.get(parameter!("ROT_ARM"));
+        let place = |x, y, counter_clockwise| Place { x, y, counter_clockwise };
+        // The order of most autopilots: front right, rear left, front left, rear right.
+        let places =
+            [place(arm, arm, true), place(-arm, -arm, true), place(arm, -arm, false), place(-arm, arm, false)];
+        let rotors = Rotors::new(rotor, &places).map_err(parameters.naming("ROT_"))?;
+        Ok(Self { limits, rotors, per_max_speed: T::one() / rotor.max_speed })
+    }
+
+    // After a take-over what is applied differs without being limited; mostly it does not differ, and nothing has to be found out.
+    pub(crate) fn limit(&self, wanted: &Command<T>, applied: &Command<T>) -> bool {
+        wanted != applied && self.apply(wanted) != *wanted
+    }
+
+    pub(crate) fn limits(&self) -> ActuatorLimits<T> {
+        self.limits
+    }
+
+    /// Rotor speeds as shares of the largest, 0 to 1, for a command as it was [applied](Actuation::apply). A command of nothing at all
+    /// stops them, where the least thrust has them idle.
+    #[must_use]
+    pub fn duties(&self, applied: &Command<T>) -> [T; 4] {
+        if *applied == Command::zero() {
+            return [T::zero(); 4];
+        }
+        // Rounding alone can lead outside.
+        self.rotors.speeds(applied).map(|speed| (speed * self.per_max_speed).min(T::one()))
+    }
+}
+
+impl<T: Real> Actuation<T> for Actuators<T> {
+    /// Always: they were checked when they were made.
+    fn check(&self) -> Result<(), OutOfRange<T>> {
+        Ok(())
+    }
+
+    #[inline]
+    fn apply(&self, command: &Command<T>) -> Command<T> {
+        self.rotors.apply(&self.limits.apply(command))
+    }
+
+    fn least_thrust(&self) -> T {
+        self.apply(&Command::zero()).thrust
+    }
+}

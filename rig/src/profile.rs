@@ -1,0 +1,146 @@
+//! `PATH_SPEED` to `PATH_YAW_Y`, `REF_RATE`: how fast a curve is flown and where the nose points.
+
+use controller::law::lift::PositionSeries;
+use controller::path::{
+    AlongTangent, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Located, PointingAt, Profiled,
+    ScalarField, SpeedProfile, YawProfile,
+};
+use controller::{Analytic, OutOfRange, Real, Series};
+
+use crate::curve::{AnyCurve, NoFormula};
+use crate::entry::Entry;
+use crate::parameters::Parameters;
+use crate::{parameter, run};
+
+const FAR: (f64, f64) = (-1e5, 1e5);
+
+pub(crate) const ENTRIES: &[Entry<f64>] = &[
+    Entry::real(
+        "PATH_SPEED",
+        "speed",
+        "m/s",
+        1.0,
+        (-100.0, 100.0),
+        "Speed along the curve; negative flies it the other way.",
+    ),
+    Entry::real(
+        "PATH_ACC",
+        "acceleration",
+        "m/s^2",
+        0.0,
+        (0.0, 100.0),
+        "Largest centripetal acceleration, from 0.01: slower where the curve bends. 0: the same speed everywhere.",
+    ),
+    Entry::choice(
+        "PATH_YAW_KIND",
+        "kind",
+        &["fixed", "along the tangent", "towards a line"],
+        0,
+        "Yaw along the path.",
+    ),
+    Entry::real("PATH_YAW", "yaw", "rad", 0.0, (-100.0, 100.0), "Fixed yaw."),
+    Entry::real("PATH_YAW_X", "x", "m", 0.0, FAR, "p1 of the vertical line that the nose points to."),
+    Entry::real("PATH_YAW_Y", "y", "m", 0.0, FAR, "Its p2."),
+    Entry::real(
+        "REF_RATE",
+        "rate",
+        "rad/s",
+        1.0,
+        (-50.0, 50.0),
+        "Tracking law's circle: angular rate, from n2 to n1.",
+    ),
+];
+
+/// A path of any kind, chosen at run time: all from numbers, but for a curve by the formulas `F` and profiles by `G`.
+pub type AnyPath<T, F = NoFormula, G = NoFormula, const K: usize = { crate::HARMONICS }> =
+    Profiled<AnyCurve<T, F, K>, AnySpeed<T, G>, AnyYaw<T, G>>;
+
+/// A speed of any kind.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum AnySpeed<T, F = NoFormula> {
+    Constant(ConstantSpeed<T>),
+    CurvatureLimited(CurvatureLimited<T>),
+    Formula(Formula<F>),
+}
+
+/// A yaw of any kind.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum AnyYaw<T, F = NoFormula> {
+    Fixed(FixedYaw<T>),
+    Tangent(AlongTangent),
+    PointingAt(Formula<PointingAt<T>>),
+    Formula(Formula<F>),
+}
+
+impl<T: Real> ScalarField<T> for NoFormula {
+    fn at<A: Analytic<T>>(&self, _: [A; 3]) -> A {
+        match *self {}
+    }
+}
+
+/// The path that `parameters` describe.
+///
+/// # Errors
+/// What curve or profile refuse, by the parameter's name where it is one parameter's value.
+pub fn path<T: Real>(parameters: &Parameters<T>) -> Result<AnyPath<T>, OutOfRange<T>> {
+    Ok(Profiled {
+        curve: AnyCurve::new(parameters)?,
+        speed: AnySpeed::new(parameters)?,
+        yaw: AnyYaw::new(parameters)?,
+    })
+}
+
+impl<T: Real, F> AnySpeed<T, F> {
+    /// The speed that `parameters` describe.
+    ///
+    /// # Errors
+    /// What the profile refuses, by the parameter's name.
+    pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
+        let [speed, acceleration] = parameters.run(run!("PATH_SPEED" to "PATH_ACC"));
+        Ok(if acceleration > T::zero() {
+            Self::CurvatureLimited(CurvatureLimited::new(speed, acceleration).map_err(parameters.naming("PATH_"))?)
+        } else {
+            Self::Constant(ConstantSpeed(speed))
+        })
+    }
+}
+
+impl<T: Real, F> AnyYaw<T, F> {
+    /// The yaw that `parameters` describe.
+    ///
+    /// # Errors
+    /// What the profile refuses, by the parameter's name.
+    pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
+        let [x, y] = parameters.run(run!("PATH_YAW_X" to "PATH_YAW_Y"));
+        Ok(match parameters.whole(parameter!("PATH_YAW_KIND")) {
+            0 => Self::Fixed(FixedYaw(parameters.get(parameter!("PATH_YAW")))),
+            1 => Self::Tangent(AlongTangent),
+            _ => Self::PointingAt(Formula(PointingAt { x, y })),
+        })
+    }
+}
+
+impl<T: Real, C: Curved<T>, F: ScalarField<T>> SpeedProfile<T, C> for AnySpeed<T, F> {
+    #[inline]
+    fn speed(&self, curve: &C, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
+        match self {
+            Self::Constant(speed) => speed.speed(curve, position, located),
+            Self::CurvatureLimited(speed) => speed.speed(curve, position, located),
+            Self::Formula(speed) => speed.speed(curve, position, located),
+        }
+    }
+}
+
+impl<T: Real, F: ScalarField<T>> YawProfile<T> for AnyYaw<T, F> {
+    #[inline]
+    fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3> {
+        match self {
+            Self::Fixed(yaw) => yaw.yaw(position, located),
+            Self::Tangent(yaw) => yaw.yaw(position, located),
+            Self::PointingAt(yaw) => yaw.yaw(position, located),
+            Self::Formula(yaw) => yaw.yaw(position, located),
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! The controller as it flies: a supervised law of either kind, with limits and rotors.
+
+use controller::{
+    Command, Disturbance, Fault, Follower, Margin, Margins, Mode, Path, Real, Request, Solution, State, Supervisor,
+    Vector3, Vehicle, dynamics,
+};
+
+use crate::actuators::Actuators;
+use crate::error::SetupError;
+use crate::parameters::Parameters;
+use crate::profile::{AnyPath, path};
+use crate::track::{Tracked, Tracking};
+use crate::{flight, gains, observer, parameter, timing, vehicle};
+
+/// A controller made of [`Parameters`]: states and requests in, commands and rotor speeds out.
+#[derive(Clone, Debug)]
+pub struct Rig<T: Real, P = AnyPath<T>> {
+    law: Law<T, P>,
+    last: Output<T>,
+}
+
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)]
+enum Law<T: Real, P> {
+    Follow(Supervisor<T, P, Actuators<T>>),
+    Track(Tracking<T>),
+}
+
+/// What a step answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Output<T> {
+    /// Thrust and torque for the coming hold: finite, and what limits and rotors give.
+    pub command: Command<T>,
+    /// What the vehicle is doing.
+    pub mode: Mode,
+    /// Why it is not doing what was asked for: the last fault since something else was.
+    pub fault: Option<Fault>,
+    /// A margin past its warning.
+    pub warning: Option<Margin>,
+    /// The law flew, and asked for more than limits and rotors give.
+    pub limited: bool,
+}
+
+/// Where a command came from, and what was found of disturbances.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telemetry<T> {
+    /// The law's numbers, if it flew.
+    pub law: Option<LawNumbers<T>>,
+    /// Force on the payload in N, beyond the model's, N; along the rod that on both bodies.
+    pub payload_force: [T; 3],
+    /// Force on the UAV in N, across the rod, N.
+    pub uav_force: [T; 3],
+    /// Torque on the UAV in body axes, N·m.
+    pub torque: [T; 3],
+    /// The payload's mass that would explain the force along the rod in still air, kg.
+    pub payload_mass: T,
+}
+
+/// The numbers of a law's answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LawNumbers<T> {
+    /// ξ, padded with zeros to the longer law's 20 numbers.
+    pub xi: [T; 20],
+    /// Wanted highest derivatives of the outputs.
+    pub nu: [T; 4],
+    /// The compensator's input, m/s⁶.
+    pub u_zeta: T,
+    /// Distances from the singularities.
+    pub margins: Margins<T>,
+}
+
+impl<T: Real> Rig<T> {
+    /// The controller that `parameters` describe, rotors off.
+    ///
+    /// # Errors
+    /// A parameter that the controller refuses, by its name, or gains that make no stable loop.
+    pub fn new(parameters: &Parameters<T>) -> Result<Self, SetupError<T>> {
+        Self::on(path(parameters)?, parameters)
+    }
+}
+
+impl<T: Real, P: Path<T>> Rig<T, P> {
+    /// The same on another `path`.
+    ///
+    /// # Errors
+    /// As [`new`](Rig::new).
+    pub fn on(path: P, parameters: &Parameters<T>) -> Result<Self, SetupError<T>> {
+        let law = if parameters.is_on(parameter!("CTL_LAW")) {
+            Law::Track(Tracking::new(parameters)?)
+        } else {
+            let vehicle = vehicle::vehicle(parameters)?;
+            let follower = Follower::new(vehicle, path, gains::gains(parameters), timing::sampling(parameters))?
+                .with_actuation(Actuators::new(parameters)?)?
+                .with_observer(&observer::observer(parameters))?;
+            let envelope = flight::envelope(parameters, &vehicle);
+            let approach = flight::approach(parameters, &vehicle);
+            Law::Follow(Supervisor::new(follower, &envelope, approach, flight::policy(parameters))?)
+        };
+        let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
+        Ok(Self { law, last })
+    }
+
+    /// Starts on the path, from a stated ζ and with the integrals at zero.
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
+        match &mut self.law {
+            Law::Follow(supervisor) => supervisor.start(state, zeta),
+            Law::Track(tracking) => tracking.start(state, zeta),
+        }
+    }
+
+    /// Takes over a flying vehicle from `applied`, without a bump in thrust.
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+        match &mut self.law {
+            Law::Follow(supervisor) => supervisor.take_over(state, applied),
+            Law::Track(tracking) => tracking.take_over(state, applied),
+        }
+    }
+
+    /// One control step on whatever state there is. The tracking law takes no request, and has a reference, which is at `phase` (rad) now.
+    #[inline]
+    pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
+        let missing = State::at_rest(Vector3::repeat(T::lit(f64::NAN)));
+        let state = state.unwrap_or(&missing);
+        self.last = match &mut self.law {
+            Law::Follow(supervisor) => {
+                let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
+                let actuators = supervisor.follower().actuation();
+                let limited =
+                    supervisor.solution().is_some_and(|solution| actuators.limit(&solution.command, &command));
+                Output { command, mode, fault, warning, limited }
+            }
+            Law::Track(tracking) => {
+                let Tracked { command, fault } = tracking.step(state, phase);
+                let actuators = tracking.actuators();
+                let limited =
+                    tracking.solution().is_some_and(|solution| actuators.limit(&solution.command, &command));
+                Output { command, mode: tracking.mode(), fault, warning: None, limited }
+            }
+        };
+        &self.last
+    }
+}
+
+impl<T: Real, P: Path<T>> Rig<T, P> {
+    /// The last step's answer.
+    #[must_use]
+    pub fn output(&self) -> &Output<T> {
+        &self.last
+    }
+
+    /// What the vehicle is doing: as of the last step, or a take-over since.
+    #[must_use]
+    pub fn mode(&self) -> Mode {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.mode(),
+            Law::Track(tracking) => tracking.mode(),
+        }
+    }
+
+    /// The compensator's input, m/s⁶, in the last step, if the law flew.
+    #[must_use]
+    pub fn u_zeta(&self) -> Option<T> {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.solution().map(|solution| solution.u_zeta),
+            Law::Track(tracking) => tracking.solution().map(|solution| solution.u_zeta),
+        }
+    }
+
+    /// The last step's command as rotor speeds, shares of the largest: front right, rear left, front left, rear right.
+    #[must_use]
+    pub fn duties(&self) -> [T; 4] {
+        self.actuators().duties(&self.last.command)
+    }
+
+    /// What turns commands into thrust and torque.
+    #[must_use]
+    pub fn actuators(&self) -> &Actuators<T> {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.follower().actuation(),
+            Law::Track(tracking) => tracking.actuators(),
+        }
+    }
+
+    /// ζ when the next command begins to act.
+    #[must_use]
+    pub fn zeta(&self) -> &[T; 4] {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.follower().zeta(),
+            Law::Track(tracking) => tracking.tracker().zeta(),
+        }
+    }
+
+    /// ξ̃ at the next sample; zero for the tracking law, which has none.
+    #[must_use]
+    pub fn integral(&self) -> [T; 3] {
+        match &self.law {
+            Law::Follow(supervisor) => *supervisor.follower().integral(),
+            Law::Track(_) => [T::zero(); 3],
+        }
+    }
+
+    /// The disturbances found up to the last sample.
+    #[must_use]
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.disturbance(),
+            Law::Track(tracking) => tracking.tracker().disturbance(),
+        }
+    }
+
+    /// The vehicle as the law knows it.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle<T> {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.follower().vehicle(),
+            Law::Track(tracking) => tracking.vehicle(),
+        }
+    }
+
+    /// The law's numbers in the last step, if it flew.
+    #[must_use]
+    pub fn numbers(&self) -> Option<LawNumbers<T>> {
+        match &self.law {
+            Law::Follow(supervisor) => supervisor.solution().map(|solution| {
+                let xi = &solution.xi;
+                LawNumbers::new(solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4])
+            }),
+            Law::Track(tracking) => tracking.solution().map(|solution| {
+                let [p1, p2, p3] = &solution.xi.position;
+                LawNumbers::new(solution, [p1, p2, p3, &solution.xi.yaw])
+            }),
+        }
+    }
+
+    /// Where the last step's command came from and what was found, at the `state` that it was made on.
+    #[must_use]
+    pub fn telemetry(&self, state: &State<T>) -> Telemetry<T> {
+        let (vehicle, found) = (self.vehicle(), self.disturbance());
+        let lambda = dynamics::lambda(vehicle, state, self.last.command.thrust);
+        Telemetry {
+            law: self.numbers(),
+            payload_force: found.payload_force(vehicle, &state.rod).into(),
+            uav_force: found.uav_force(vehicle, &state.rod).into(),
+            torque: found.torque.into(),
+            payload_mass: found.implied_payload_mass(vehicle, &state.rod, lambda),
+        }
+    }
+}
+
+impl<T: Real> LawNumbers<T> {
+    fn new<X>(solution: &Solution<T, X>, parts: [&[T]; 4]) -> Self {
+        let mut xi = [T::zero(); 20];
+        for (slot, &number) in xi.iter_mut().zip(parts.into_iter().flatten()) {
+            *slot = number;
+        }
+        Self { xi, nu: solution.nu, u_zeta: solution.u_zeta, margins: solution.margins }
+    }
+}

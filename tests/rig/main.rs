@@ -1,0 +1,3 @@
+//! The controller made of named numbers: its table, and its rotors.
+
+mod rotors;
