@@ -58,20 +58,30 @@ impl Frames {
     /// R, from B to N, of a unit quaternion (w, x, y, z) from this body to this world.
     #[must_use]
     pub fn attitude<T: Real>(self, quaternion: &[T; 4]) -> Matrix3<T> {
-        let [w, x, y, z] = *quaternion;
-        let two = T::lit(2.0);
-        let one = T::one();
-        let columns = [
-            Vector3::new(one - two * (y * y + z * z), two * (x * y + w * z), two * (x * z - w * y)),
-            Vector3::new(two * (x * y - w * z), one - two * (x * x + z * z), two * (y * z + w * x)),
-            Vector3::new(two * (x * z + w * y), two * (y * z - w * x), one - two * (x * x + y * y)),
-        ];
-        let [b1, b2, b3] = columns.map(|column| self.world(&column));
+        let rotation = rotation(quaternion);
+        let column = |index| self.world(&rotation.column(index).into());
         match self {
-            Self::NedFrd => Matrix3::from_columns(&[b1, b2, b3]),
-            Self::EnuFlu | Self::NwuFlu => Matrix3::from_columns(&[b1, -b2, -b3]),
+            Self::NedFrd => Matrix3::from_columns(&[column(0), column(1), column(2)]),
+            Self::EnuFlu | Self::NwuFlu => Matrix3::from_columns(&[column(0), -column(1), -column(2)]),
         }
     }
+}
+
+/// The rotation of a unit quaternion; of one of another length, its square times a rotation, which a check can find.
+fn rotation<T: Real>(quaternion: &[T; 4]) -> Matrix3<T> {
+    let [w, x, y, z] = *quaternion;
+    let twice = |a: T| a + a;
+    Matrix3::new(
+        w * w + x * x - y * y - z * z,
+        twice(x * y - w * z),
+        twice(x * z + w * y),
+        twice(x * y + w * z),
+        w * w - x * x + y * y - z * z,
+        twice(y * z - w * x),
+        twice(x * z - w * y),
+        twice(y * z + w * x),
+        w * w - x * x - y * y + z * z,
+    )
 }
 
 /// The UAV as its navigation reports it.
@@ -115,19 +125,11 @@ impl<T: Real> Uav<T> {
     /// in the world, from hook to payload, and its rate, 1/s.
     #[must_use]
     pub fn with_cable(&self, hook: &Vector3<T>, length: T, cable: &Vector3<T>, cable_rate: &Vector3<T>) -> State<T> {
-        let turn = |v: &Vector3<T>| rotate(&self.quaternion, v);
-        let position = self.position + turn(hook) + cable * length;
-        let velocity = self.velocity + turn(&self.body_rate.cross(hook)) + cable_rate * length;
+        let rotation = rotation(&self.quaternion);
+        let position = self.position + rotation * hook + cable * length;
+        let velocity = self.velocity + rotation * self.body_rate.cross(hook) + cable_rate * length;
         self.with_payload(&position, &velocity)
     }
-}
-
-/// `v` turned by a unit `quaternion`.
-fn rotate<T: Real>(quaternion: &[T; 4], v: &Vector3<T>) -> Vector3<T> {
-    let [w, x, y, z] = *quaternion;
-    let axis = Vector3::new(x, y, z);
-    let across = axis.cross(v) * T::lit(2.0);
-    v + across * w + axis.cross(&across)
 }
 
 #[cfg(test)]
