@@ -1,104 +1,17 @@
 //! Flights with the controller at the other end of a line: the same, bit by bit, as with the controller in this program, whatever the line
 //! does; and where a flight can't go on, an end with a reason.
 
+mod common;
+
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use controller::{ActuatorLimits, Command, ObserverParams, State};
-use hil_sim::describe::scenario::{FIGURES, Scenario, builtin};
-use hil_sim::fly::flight::{Control, End};
-use hil_sim::fly::pilot::{Answers, Decision, Pilot};
-use hil_sim::fly::run::{self, Flight};
-use hil_sim::hil::{Emulator, Endpoint, HilError, Options, Pace, Target, Wire, serve};
-
-/// Remembers every number of every command, by its bits.
-struct Recorded<A> {
-    inner: A,
-    commands: Vec<[u32; 8]>,
-}
-
-impl<A> Recorded<A> {
-    fn new(inner: A) -> Self {
-        Self { inner, commands: Vec::new() }
-    }
-}
-
-impl<A: Answers> Answers for Recorded<A> {
-    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        self.inner.start(state, zeta);
-    }
-
-    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        self.inner.take_over(state, applied);
-    }
-
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        let decision = self.inner.step(state, t_s)?;
-        let Decision { command, zeta, .. } = decision;
-        let [t1, t2, t3] = command.torque.into();
-        let [z1, z2, z3, z4] = zeta;
-        // The law computes in f32, so nothing is lost.
-        self.commands.push([command.thrust, t1, t2, t3, z1, z2, z3, z4].map(|number| (number as f32).to_bits()));
-        Some(decision)
-    }
-}
-
-fn scenario(name: &str, duration_s: f64) -> Scenario {
-    let mut scenario = builtin(name).expect("it is built in").expect("and valid");
-    scenario.duration_s = scenario.duration_s.min(duration_s);
-    scenario.steady_from_s = None;
-    scenario
-}
-
-/// The paper's figures, and one flight with what they leave off: observers against a wrong mass, limits that are met, a latency and a lag to
-/// look ahead for.
-fn flights(duration_s: f64) -> Vec<Scenario> {
-    let mut flights: Vec<Scenario> = FIGURES.iter().map(|(name, _)| scenario(name, duration_s)).collect();
-    let mut observed = scenario("fig5-no-integral", duration_s);
-    observed.name = "observed".to_owned();
-    let controller = &mut observed.controller;
-    controller.observer = ObserverParams::with_bandwidth(4.0);
-    controller.limits = ActuatorLimits { min_thrust: 5.0, max_thrust: 40.0, max_torque: [0.5, 0.75, 0.25] };
-    controller.latency_s = 0.002;
-    controller.rotor_lag_s = 0.005;
-    flights.push(observed);
-    flights
-}
-
-fn fly<A: Answers>(scenario: &Scenario, controller: &mut A) -> Flight {
-    run::fly_on(scenario, controller, false, Control::alone()).expect("a built-in scenario can be set up")
-}
-
-fn fly_here(scenario: &Scenario) -> Vec<[u32; 8]> {
-    let mut pilot = Recorded::new(Pilot::<f32>::new(&scenario.controller).expect("valid"));
-    assert_eq!(fly(scenario, &mut pilot).end, End::Complete);
-    pilot.commands
-}
-
-/// Flies on a target; its commands, or why it ended.
-fn fly_there(scenario: &Scenario, target: Target) -> (Result<Vec<[u32; 8]>, HilError>, Target) {
-    let mut target = Recorded::new(target);
-    if let Err(error) = target.inner.prepare(scenario) {
-        return (Err(error), target.inner);
-    }
-    let flight = fly(scenario, &mut target);
-    let Recorded { inner: mut target, commands } = target;
-    match (flight.end, target.take_failure()) {
-        (End::Complete, None) => (Ok(commands), target),
-        (_, Some(error)) => (Err(error), target),
-        (end, None) => panic!("ended as {end:?} for no reason"),
-    }
-}
-
-/// Quick to ask again: in a test the other end is near.
-const OPTIONS: Options = Options {
-    pace: Pace::Lockstep,
-    patience: Duration::from_secs(10),
-    retry: Duration::from_millis(20),
-    telemetry: false,
-};
+use common::{Ending, OPTIONS, Recorded, flights, fly, fly_here, fly_there, scenario};
+use controller::ActuatorLimits;
+use hil_sim::fly::flight::End;
+use hil_sim::fly::pilot::Pilot;
+use hil_sim::hil::{Endpoint, HilError, Options, Pace, Target, Wire, serve};
 
 /// The flight program's logic in a thread, at the other end of a pair of sockets, behind what `damage` does to the line.
 fn soft_target<W: Wire + 'static>(
@@ -315,44 +228,6 @@ fn a_missing_port_or_socket_is_named() {
     assert!(matches!(error, HilError::Silent { .. }) && error.to_string().contains("udp:127.0.0.1:9"), "{error}");
 }
 
-/// A line that ends after so many reads.
-struct Ending {
-    stream: Option<UnixStream>,
-    reads: u32,
-}
-
-impl Ending {
-    fn stream(&mut self) -> io::Result<&mut UnixStream> {
-        self.stream.as_mut().ok_or_else(|| io::ErrorKind::BrokenPipe.into())
-    }
-}
-
-impl Read for Ending {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        self.reads = self.reads.saturating_sub(1);
-        if self.reads == 0 {
-            self.stream = None;
-        }
-        self.stream()?.read(bytes)
-    }
-}
-
-impl Write for Ending {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.stream()?.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Wire for Ending {
-    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
-        self.stream()?.set_patience(patience)
-    }
-}
-
 #[test]
 fn a_line_that_stays_down_ends_the_flight() {
     let options = Options { patience: Duration::from_millis(500), ..OPTIONS };
@@ -360,85 +235,6 @@ fn a_line_that_stays_down_ends_the_flight() {
     let (commands, _) = fly_there(&scenario("fig3a", 10.0), target);
     let error = commands.expect_err("the line has ended");
     assert!(matches!(error, HilError::Down { .. }), "{error}");
-}
-
-/// The firmware's images for QEMU's machines, built once. `None` where a machine has no QEMU: not a user's fault, but CI's.
-fn images() -> Option<Vec<(&'static str, PathBuf)>> {
-    use std::process::Command;
-    use std::sync::OnceLock;
-    static IMAGES: OnceLock<Option<Vec<(&'static str, PathBuf)>>> = OnceLock::new();
-    IMAGES
-        .get_or_init(|| {
-            let there = Command::new("qemu-system-arm").arg("--version").output().is_ok();
-            if !there {
-                assert!(std::env::var_os("CI").is_none(), "CI has to have qemu-system-arm");
-                eprintln!("not run: there is no qemu-system-arm here");
-                return None;
-            }
-            let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..");
-            let build = |board: &str| {
-                let status = Command::new(env!("CARGO"))
-                    .args(["xtask", "thumb", "build", "--quiet", "--release", "--package", "firmware"])
-                    .args(["--no-default-features", "--features", board])
-                    .current_dir(&root)
-                    .status()
-                    .expect("cargo runs");
-                assert!(status.success(), "the firmware for {board} does not build");
-                let built = root.join("firmware/target/thumbv7em-none-eabihf/release/firmware");
-                let kept = std::env::temp_dir().join(format!("firmware-{board}-{}.elf", std::process::id()));
-                std::fs::copy(built, &kept).expect("the image is where it is built");
-                kept
-            };
-            let f405 = build("stm32f405");
-            let mps2 = build("mps2");
-            Some(vec![("netduinoplus2", f405), ("mps2-an386", mps2.clone()), ("mps2-an500", mps2)])
-        })
-        .clone()
-}
-
-fn emulated(machine: &str, image: &std::path::Path, options: Options) -> Target {
-    Target::emulated(Emulator::start(machine, image, false).unwrap(), options).unwrap()
-}
-
-/// Seconds of each figure that are flown in each emulator, or another number from the environment. Fig. 2's obstacle is at 5 s; Figs 2 and 3 last 20 s
-/// and 10 s, and Figs 5 and 6, 132 s, are steady by 20.
-fn emulated_s(machine: &str) -> f64 {
-    match std::env::var("EMULATED_S") {
-        Ok(text) => text.parse().expect("EMULATED_S is a number of seconds"),
-        Err(_) if machine == "netduinoplus2" => 20.0,
-        Err(_) => 6.0,
-    }
-}
-
-#[test]
-fn the_figures_are_the_same_on_every_emulated_board() {
-    let Some(images) = images() else { return };
-    for (machine, image) in images {
-        let mut target = emulated(machine, &image, OPTIONS);
-        for scenario in flights(emulated_s(machine)) {
-            let (commands, back) = fly_there(&scenario, target);
-            assert_eq!(commands.unwrap(), fly_here(&scenario), "{} on {machine}", scenario.name);
-            target = back;
-        }
-    }
-}
-
-#[test]
-fn a_killed_emulator_ends_the_flight() {
-    let Some(images) = images() else { return };
-    let (machine, image) = &images[0];
-    let target = emulated(machine, image, OPTIONS);
-    let process = target.emulator_id().expect("it is emulated").to_string();
-    let killer = std::thread::spawn(move || {
-        std::thread::sleep(Duration::from_secs(3));
-        std::process::Command::new("kill").args(["-9", &process]).status()
-    });
-    let begun = Instant::now();
-    let (commands, _) = fly_there(&scenario("fig5", 1e3), target);
-    let error = commands.expect_err("the emulator was killed");
-    assert!(matches!(error, HilError::EmulatorDied { .. }), "{error}");
-    assert!(begun.elapsed() < Duration::from_secs(3) + OPTIONS.patience + Duration::from_secs(5));
-    assert!(killer.join().is_ok_and(|status| status.is_ok_and(|status| status.success())));
 }
 
 #[test]
@@ -463,35 +259,4 @@ fn every_logged_sample_has_its_telemetry() {
             }
         }
     }
-}
-
-#[test]
-fn a_cut_line_is_mended_and_nothing_is_lost() {
-    let Some(images) = images() else { return };
-    let (machine, image) = &images[1];
-    let path = std::env::temp_dir().join(format!("hil-test-{}-cut.sock", std::process::id()));
-    let _ = std::fs::remove_file(&path);
-    // As a user's own emulator, on a line that can be cut.
-    let mut emulator = std::process::Command::new("qemu-system-arm")
-        .args(["-machine", machine, "-display", "none", "-monitor", "none", "-kernel"])
-        .arg(image)
-        .args(["-serial", &format!("unix:{},server=on,wait=on", path.display())])
-        .stderr(std::process::Stdio::null())
-        .spawn()
-        .unwrap();
-    let stream = (0..100)
-        .find_map(|_| {
-            std::thread::sleep(Duration::from_millis(50));
-            UnixStream::connect(&path).ok()
-        })
-        .expect("the emulator opens its socket");
-    let wire = Ending { stream: Some(stream), reads: 1_500 };
-    let target = Target::over(Endpoint::Unix(path.clone()), Box::new(wire), OPTIONS).unwrap();
-    let scenario = scenario("fig3a", 2.0);
-    let (commands, target) = fly_there(&scenario, target);
-    assert_eq!(commands.unwrap(), fly_here(&scenario));
-    assert_eq!(target.statistics().reconnections, 1);
-    let _ = emulator.kill();
-    let _ = emulator.wait();
-    let _ = std::fs::remove_file(path);
 }
