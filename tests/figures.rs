@@ -7,7 +7,8 @@ use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::metrics::Results;
 use hil_sim::fly::run::{Arithmetic, fly, fly_simply};
 
-/// A flight's sampling moves an event by some periods, and the reference is printed to milliseconds.
+/// A flight's sampling moves an event by some periods, and the reference is printed to
+/// milliseconds.
 const TIME_S: f64 = 0.010;
 /// What sampling at 1 kHz and the reference's printed digits leave of an integral or a maximum.
 const FRACTION: f64 = 0.01;
@@ -73,7 +74,8 @@ fn figures_3_and_4_settle_and_spend_as_the_reference() {
 
 #[test]
 fn figure_2a_stays_on_the_path_whatever_the_hold() {
-    // Sampling alone in f64: second order in the period, 8.3e-7 m at 1 kHz and 2.1e-5 m at 200 Hz by a prototype.
+    // Sampling alone in f64: second order in the period, 8.3e-7 m at 1 kHz and 2.1e-5 m at 200 Hz
+    // by a prototype.
     let bars = [(Arithmetic::F64, 1000.0, 5e-6), (Arithmetic::F64, 200.0, 5e-5), (Arithmetic::F32, 1000.0, 2e-4)];
     for (arithmetic, rate_hz, bar) in bars {
         for hold_s in [0.0, 0.5, 1.0, 2.0, std::f64::consts::PI] {
@@ -141,7 +143,8 @@ fn the_f32_controller_stays_near_its_f64_twin() {
             .unwrap()
             .deviation
             .expect("a twin flew along");
-        // Some 2⁻²⁴ times the condition of the law; with integral action, the sum of small terms in a large one adds its own.
+        // Some 2⁻²⁴ times the condition of the law; with integral action, the sum of small terms in
+        // a large one adds its own.
         let bound = if matches!(*name, "fig5" | "fig6") { 2e-4 } else { 1e-5 };
         assert!(deviation.max() <= bound, "{name}: {deviation:?}");
     }

@@ -1,4 +1,5 @@
-//! Proof by flight: every curve of the scenarios, from off the path, on it, and with a wrong payload mass.
+//! Proof by flight: every curve of the scenarios, from off the path, on it, and with a wrong
+//! payload mass.
 
 use hil_sim::describe::scenario::{CURVES, Law, Scenario, builtin};
 use hil_sim::fly::flight::End;
@@ -84,8 +85,9 @@ fn every_curve_is_invariant() {
     }
 }
 
-/// A wrong mass is a force that is constant in N. On a horizontal curve the integrals find it; where h1, h2 and ρ turn against the
-/// vertical along the lap it is not constant for them, and a residual stays, which is printed.
+/// A wrong mass is a force that is constant in N. On a horizontal curve the integrals find it;
+/// where h1, h2 and ρ turn against the vertical along the lap it is not constant for them, and a
+/// residual stays, which is printed.
 #[test]
 fn a_wrong_mass_with_integral_action_is_stable_on_every_curve() {
     let scenarios: Vec<Scenario> = wrong().map(|(name, _)| scenario(name)).collect();
@@ -99,7 +101,8 @@ fn a_wrong_mass_with_integral_action_is_stable_on_every_curve() {
     }
 }
 
-/// The observers find the same force wherever the curve turns, and need no slower flight and no second lap for it.
+/// The observers find the same force wherever the curve turns, and need no slower flight and no
+/// second lap for it.
 #[test]
 fn a_wrong_mass_is_observed_on_every_curve() {
     let scenarios: Vec<Scenario> = wrong()

@@ -1,4 +1,4 @@
-//! What the README shows is what there is.
+//! The README's scenario flies, and its costs are the measured ones.
 
 use hil_sim::describe::scenario::{Law, Scenario};
 use hil_sim::fly::flight::End;

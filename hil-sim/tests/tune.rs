@@ -1,4 +1,5 @@
-//! Tuning: the same for any number of threads, what it proposes is what it flew, and what it says follows from its numbers.
+//! Tuning: the same for any number of threads, what it proposes is what it flew, and what it says
+//! follows from its numbers.
 
 use hil_sim::describe::scenario::{Law, Scenario};
 use hil_sim::fly::flight::Control;
@@ -35,7 +36,8 @@ fn a_tuning_is_the_same_on_any_number_of_threads_and_says_what_it_flew() {
     assert_eq!(rows.len(), SCALES.len() * BANDWIDTHS.len());
     assert!(rows.iter().all(|row| row.good < chosen.good || row.good == chosen.good && row.cost() >= chosen.cost()));
 
-    // What physics has it trade: faster poles pay in torque, faster observers hold closer in a gust.
+    // What physics has it trade: faster poles pay in torque, faster observers hold closer in a
+    // gust.
     let at = |scale: f64, bandwidth: f64| {
         rows.iter().find(|row| row.scale == scale && row.bandwidth == bandwidth).expect("a setting of the grid")
     };

@@ -4,7 +4,8 @@ use core::fmt;
 
 use crate::table::Tabled;
 
-/// A parameter's name, at most 16 characters, as MAVLink has them. It is made at compile time, from parts too.
+/// A parameter's name, at most 16 characters, as MAVLink has them. It is made at compile time, also
+/// from parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
     bytes: [u8; 16],
@@ -84,7 +85,8 @@ pub enum Kind {
 pub struct Entry<T = f32> {
     /// What it is called.
     pub name: Name,
-    /// What the controller's struct that it goes into calls it, as in the controller's errors and in scenario files.
+    /// What the controller's struct that it goes into calls it, as in the controller's errors and
+    /// in scenario files.
     pub field: &'static str,
     /// Its unit; empty for a plain number.
     pub unit: &'static str,
@@ -148,7 +150,7 @@ impl<T: Tabled> Entry<T> {
     /// `value`, if the parameter may have it.
     ///
     /// # Errors
-    /// It is outside the range, as a NaN is too, or it is none of the values that there are.
+    /// It is outside the range, as a NaN always is, or not one of the choices.
     pub fn accept(&'static self, value: T) -> Result<T, Refused<T>> {
         if !(value >= self.min && value <= self.max) {
             return Err(Refused::OutOfRange(self, value));
@@ -163,11 +165,11 @@ impl<T: Tabled> Entry<T> {
 /// Why a parameter was not set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Refused<T: 'static> {
-    /// There is none of that name.
+    /// No parameter has that name.
     Unknown,
     /// The value is outside the parameter's range, or not a number.
     OutOfRange(&'static Entry<T>, T),
-    /// The parameter takes whole numbers alone, and the value is none.
+    /// The parameter takes whole numbers only.
     NotWhole(&'static Entry<T>, T),
 }
 

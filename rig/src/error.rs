@@ -7,7 +7,8 @@ use controller::{GainError, OutOfRange, Real};
 /// Why parameters make no controller. What it says fits a line of 50 characters, reason first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SetupError<T> {
-    /// A number is out of range, given the others. Its field is the parameter's name where it is one parameter's value.
+    /// A number is out of range, given the others. Its field is the parameter's name where it is
+    /// one parameter's value.
     Range(OutOfRange<T>),
     /// The gains do not make a stable loop.
     Gains(GainError<T>),

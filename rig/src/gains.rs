@@ -7,7 +7,7 @@ use crate::parameters::Parameters;
 use crate::run;
 use crate::table::concatenated;
 
-/// Only what a float holds: the law itself refuses gains that make no stable loop.
+/// The range is that of a float: the law itself refuses gains that make no stable loop.
 const RANGE: (f64, f64) = (-1e9, 1e9);
 
 // The poles -1, -2, … of each chain, spread as they should be in flight.

@@ -1,11 +1,14 @@
 //! One supervised controller made of named numbers: any path, either law, limits and rotors.
 //!
 //! ```text
-//! Parameters ──▶ vehicle, timing, path, gains, observers, envelope, policy, actuators ──▶ Rig ── step(state, request) ──▶ command, rotors
+//! Parameters ──▶ vehicle, timing, path, gains, observers, envelope, policy, actuators ──▶ Rig
+//!
+//! state, request ──▶ Rig::step ──▶ command, rotors
 //! ```
 //!
-//! What flies on a board is this, and so is what the simulator flies, a campaign tries and the bench counts. The [table](Entry) is data: a
-//! name that MAVLink can carry, unit, default, range and meaning; the controller's own ranges and defaults stand in it once.
+//! What flies on a board is this, and so is what the simulator flies, a campaign tries and the
+//! bench counts. The [table](Entry) is data: a name that MAVLink can carry, unit, default, range
+//! and meaning; the controller's own ranges and defaults stand in it once.
 #![no_std]
 
 mod actuators;

@@ -64,7 +64,8 @@ impl<T: Real> Parameters<T> {
     /// A choice or a whole number up to 255.
     #[must_use]
     pub fn whole(&self, parameter: Parameter) -> u8 {
-        // By counting, since a number of any scalar is not turned into an integer without double precision.
+        // By counting, since a number of any scalar is not turned into an integer without double
+        // precision.
         let (value, mut count) = (self.get(parameter), T::zero());
         (0..u8::MAX)
             .find(|_| {
@@ -86,7 +87,8 @@ impl<T: Real> Parameters<T> {
         Parameters(self.0.map(|value| U::lit(value.to_f64())))
     }
 
-    /// Names the parameter, of those whose names begin with `prefix`, whose value the controller refused.
+    /// Names the parameter, of those whose names begin with `prefix`, whose value the controller
+    /// refused.
     pub(crate) fn naming(&self, prefix: &'static str) -> impl Fn(OutOfRange<T>) -> OutOfRange<T> + '_ {
         move |error| {
             let mut entries = f32::table().iter().zip(self.0);

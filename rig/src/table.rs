@@ -61,7 +61,7 @@ pub const fn narrowed<const N: usize>(table: &[Entry<f64>; N]) -> [Entry<f32>; N
 /// Where the entry of this name stands in a table; for the compiler.
 ///
 /// # Panics
-/// There is none.
+/// No entry has this name.
 #[must_use]
 pub const fn index_of(table: &[Entry<f64>], name: &str) -> usize {
     let mut index = 0;
@@ -74,7 +74,8 @@ pub const fn index_of(table: &[Entry<f64>], name: &str) -> usize {
     panic!("no parameter of this name")
 }
 
-/// A scalar in which the table is kept: single precision flies, double precision is its twin in the simulator.
+/// A scalar in which the table is kept: single precision flies, double precision is its twin in the
+/// simulator.
 pub trait Tabled: Real {
     /// All parameters.
     fn table() -> &'static [Entry<Self>; COUNT];
@@ -111,7 +112,7 @@ impl Parameter {
     /// The parameter of this name. [`parameter!`](crate::parameter) has the compiler find it.
     ///
     /// # Panics
-    /// There is none.
+    /// No entry has this name.
     #[must_use]
     pub const fn named(name: &str) -> Self {
         Self(index_of(&WIDE, name))
@@ -141,10 +142,11 @@ impl Parameter {
 pub struct Run<const N: usize>(usize);
 
 impl<const N: usize> Run<N> {
-    /// From the parameter `first` to the parameter `last`. [`run!`](crate::run) has the compiler find them.
+    /// From the parameter `first` to the parameter `last`. [`run!`](crate::run) has the compiler
+    /// find them.
     ///
     /// # Panics
-    /// There is none of one of the names, or they stand elsewhere.
+    /// No parameter has one of the names, or they are not N entries apart.
     #[must_use]
     pub const fn between(first: &str, last: &str) -> Self {
         let (first, last) = (Parameter::named(first), Parameter::named(last));
@@ -158,7 +160,7 @@ impl<const N: usize> Run<N> {
     }
 }
 
-/// The [`Parameter`] of a name, found by the compiler, which refuses a name that there is not.
+/// The [`Parameter`] of a name, found by the compiler, which refuses an unknown name.
 #[macro_export]
 macro_rules! parameter {
     ($name:literal) => {

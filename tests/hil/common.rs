@@ -50,8 +50,8 @@ pub fn scenario(name: &str, duration_s: f64) -> Scenario {
     scenario
 }
 
-/// The paper's figures, and one flight with what they leave off: observers against a wrong mass, limits that are met, a latency and a lag to
-/// look ahead for.
+/// The paper's figures, and one flight with what they leave off: observers against a wrong mass,
+/// limits that are met, a latency and a lag to look ahead for.
 pub fn flights(duration_s: f64) -> Vec<Scenario> {
     let mut flights: Vec<Scenario> = FIGURES.iter().map(|(name, _)| scenario(name, duration_s)).collect();
     let mut observed = scenario("fig5-no-integral", duration_s);

@@ -40,8 +40,9 @@ fn emulated(machine: &str, image: &Path, options: Options) -> Target {
     Target::emulated(Emulator::start(machine, image, false).unwrap(), options).unwrap()
 }
 
-/// Seconds of each figure that are flown in each emulator, or another number from the environment. Fig. 2's obstacle is at 5 s; Figs 2 and 3 last 20 s
-/// and 10 s, and Figs 5 and 6, 132 s, are steady by 20.
+/// Seconds of each figure that are flown in each emulator, or another number from the environment.
+/// Fig. 2's obstacle is at 5 s; Figs 2 and 3 last 20 s and 10 s, and Figs 5 and 6, 132 s, are
+/// steady by 20.
 fn emulated_s(machine: &str) -> f64 {
     match std::env::var("EMULATED_S") {
         Ok(text) => text.parse().expect("EMULATED_S is a number of seconds"),

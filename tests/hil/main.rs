@@ -1,5 +1,6 @@
-//! Flights with the controller at the other end of a line: the same, bit by bit, as with the controller in this program, whatever the line
-//! does; and where a flight can't go on, an end with a reason.
+//! Flights with the controller at the other end of a line: the same, bit by bit, as with the
+//! controller in this program, whatever the line does; and where a flight can't go on, an end with
+//! a reason.
 
 mod common;
 
@@ -13,7 +14,8 @@ use hil_sim::fly::flight::End;
 use hil_sim::fly::pilot::Pilot;
 use hil_sim::hil::{Endpoint, HilError, Options, Pace, Target, Wire, serve};
 
-/// The flight program's logic in a thread, at the other end of a pair of sockets, behind what `damage` does to the line.
+/// The flight program's logic in a thread, at the other end of a pair of sockets, behind what
+/// `damage` does to the line.
 fn soft_target<W: Wire + 'static>(
     options: Options,
     damage: impl FnOnce(UnixStream) -> W,

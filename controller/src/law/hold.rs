@@ -1,23 +1,27 @@
-//! The law to fall back on: brings UAV and payload to rest and keeps their altitude, from any state whatever.
+//! The law to fall back on: brings UAV and payload to rest and keeps their altitude, from any state
+//! whatever.
 //!
-//! It steers the UAV, at r = p − L q, and divides by nothing that can vanish. With D = d − L δ the disturbances' part in r̈, model (1) solved for the force
-//! f = T b3 that gives the UAV an acceleration a is
+//! It steers the UAV, at r = p − L q, and divides by nothing that can vanish. With D = d − L δ
+//! the disturbances' part in r̈, the force f = T b3 that gives the UAV an acceleration a is, from
+//! (12.1),
 //!
 //! ```text
-//! f = m_Q u + m_L (q·u) q,   u = g e3 + D − a + (m_L/M) L |q̇|² q
-//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇     (the last, level: yield to the swing, which damps it)
-//! ω̇ = k_R θ − k_ω ω,   T = f·b3,   f within a cone about e3, θ the rotation from b3 to it
+//! f = m_Q u + m_L (q·u) q,   u = g e3 + D − a + (m_L/M) L |q̇|² q               (14.1)
+//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇   (14.2)
+//! ω̇ = k_R θ − k_ω ω,   T = f·b3                                                    (14.3)
 //! ```
 //!
-//! so the rod's pull on the UAV is made good whatever its direction, up to the thrust there is. The target r* starts at the UAV and at its level
-//! velocity, which it loses within [`BRAKING`]; a fall is stopped as hard as the rotors can.
+//! with f within a cone about e3, θ the rotation from b3 to it, and only the level part of k_s L
+//! q̇: to yield to the swing damps it. So the rod's pull on the UAV is made good whatever its
+//! direction, up to the thrust there is. The target r* starts at the UAV and at its level velocity,
+//! which it loses within [`BRAKING`]; a fall is stopped as hard as the rotors can.
 
 use model::{Command, Disturbance, Real, State, Vehicle};
 use nalgebra::Vector3;
 
 /// Time constant with which the target loses the UAV's level velocity, s.
 const BRAKING: f64 = 1.0;
-/// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles near −0.5, −0.75 ± 0.2 j.
+/// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles at −0.27 ± 0.36 j and −1.45.
 const POSITION_GAIN: f64 = 1.0;
 const VELOCITY_GAIN: f64 = 2.0;
 const INTEGRAL_GAIN: f64 = 0.3;
@@ -25,20 +29,22 @@ const INTEGRAL_GAIN: f64 = 0.3;
 const SWING_GAIN: f64 = 0.8;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
-/// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it stays below this, m/s².
+/// Faster than this, m/s, the integral waits, since a transient is no steady error; and it stays
+/// below this, m/s².
 const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
 /// A rod that stands on its head, within 8°, may be in balance: an acceleration, m/s², topples it.
 const BALANCED: f64 = -0.99;
 const TOPPLING: f64 = 0.5;
-/// Largest disturbance that is made good, as a share of g: estimates of a tumbling vehicle are not to be trusted further.
+/// Largest disturbance that is made good, as a share of g: estimates of a tumbling vehicle are not
+/// to be trusted further.
 const DISTURBANCE_BOUND: f64 = 0.5;
 /// Tangent of the cone's angle, 35°.
 const CONE: f64 = 0.7;
 /// Vertical force between these shares of the weight.
 const LEAST_LIFT: f64 = 0.4;
 const MOST_LIFT: f64 = 2.0;
-/// k_R, 1/s², and k_ω, 1/s: 6 rad/s, critically damped; yaw rate, 1/s.
+/// k_R, 1/s², and k_ω, 1/s: 8 rad/s, critically damped; yaw rate, 1/s.
 const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
@@ -62,12 +68,14 @@ impl<T: Real> Hold<T> {
         }
     }
 
-    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means that the ground carries it.
+    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
+    /// that the ground carries it.
     pub(crate) fn left_above(&self, vehicle: &Vehicle<T>, state: &State<T>) -> T {
         self.target.z - (state.position.z - state.rod.z * vehicle.params().rod_length)
     }
 
-    /// The command at `state` against `disturbance`, and the target one `period` (s) on, sinking at `descent` (m/s).
+    /// The command at `state` against `disturbance`, and the target one `period` (s) on, sinking at
+    /// `descent` (m/s).
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
@@ -111,7 +119,8 @@ impl<T: Real> Hold<T> {
         let sideways = limited(&level(&force), lift * T::lit(CONE));
         let force = Vector3::new(sideways.x, sideways.y, lift);
 
-        // The angle to the wanted direction, about the level axis of the body that turns to it; upside down, about any.
+        // The angle to the wanted direction, about the level axis of the body that turns to it;
+        // upside down, about any.
         let body = attitude.tr_mul(&force);
         let across = (body.x * body.x + body.y * body.y).sqrt();
         let angle = across.atan2(body.z);
@@ -141,7 +150,7 @@ fn level<T: Real>(v: &Vector3<T>) -> Vector3<T> {
     Vector3::new(v.x, v.y, T::zero())
 }
 
-/// `v`, or as much of it as has length `most`.
+/// `v`, shortened to length `most` if it is longer.
 #[inline(never)]
 fn limited<T: Real>(v: &Vector3<T>, most: T) -> Vector3<T> {
     let squared = v.dot(v);

@@ -1,5 +1,5 @@
 //! Curves draped over a surface that is graded along n1: h1 = F(p1, p2) is their outline seen from
-//! above, h2 = p3 − H(p1) their height. Much of (3) is constant there:
+//! above, h2 = p3 − H(p1) their height. Much of (3.2) is constant there, (15.1):
 //!
 //! ```text
 //! ∇h1 = (F1, F2, 0),   ∇h2 = (−H′, 0, 1),   ∇h1 × ∇h2 = (F2, −F1, H′ F2)

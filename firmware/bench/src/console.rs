@@ -42,7 +42,7 @@ impl Console {
     }
 
     fn put(&mut self, bytes: &[u8]) {
-        // Who reads the lines misses those that did not arrive; nobody here could tell him.
+        // Whoever reads the lines sees that some are missing; there is nobody else to tell.
         let _ = self.0.write_all(bytes);
     }
 }

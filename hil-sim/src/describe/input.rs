@@ -1,4 +1,5 @@
-//! Fields given by a user: read with the path to each, so that an error names the field that caused it.
+//! Fields given by a user: read with the path to each, so that an error names the field that caused
+//! it.
 
 use controller::{OutOfRange, Real};
 use rig::Refused;

@@ -25,7 +25,8 @@ pub struct BatchError {
     pub message: String,
 }
 
-/// Flies all scenarios, in their order; once they are to stop, those that are complete are returned.
+/// Flies all scenarios, in their order; once they are to stop, those that are complete are
+/// returned.
 ///
 /// # Errors
 /// [`BatchError`] for the first scenario that cannot be set up in f32.

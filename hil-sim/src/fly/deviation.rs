@@ -1,9 +1,9 @@
 //! How far two runs of the same law in different scalars lie apart.
 //!
-//! Of each quantity the largest ‖Δ‖ over the flight is divided by the largest ‖·‖ of the f64 twin, or by a natural
-//! size where that is larger: on the steady motion ξ and ζ are zero, and rounding relative
-//! to zero says nothing. Time is counted in units of the pendulum's √(L/g): so counted, an output and its derivatives
-//! have the same unit and fit into one norm.
+//! Of each quantity the largest ‖Δ‖ over the flight is divided by the largest ‖·‖ of the f64
+//! twin, or by a natural size where that is larger: on the steady motion ξ and ζ are zero, and
+//! rounding relative to zero says nothing. Time is counted in units of the pendulum's √(L/g): so
+//! counted, an output and its derivatives have the same unit and fit into one norm.
 
 use serde::Serialize;
 
@@ -31,7 +31,7 @@ impl Deviation {
     }
 }
 
-/// The larger, or NaN if one is: a deviation that is no number must not vanish in a maximum.
+/// The larger, or NaN if one is: a NaN must not vanish in a maximum.
 fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }

@@ -1,5 +1,5 @@
-//! One flight of many: a pilot that takes over from a hover, judged by its distance from the path. Comparisons and campaigns fly with
-//! this; it keeps no log.
+//! One flight of many: a pilot that takes over from a hover, judged by its distance from the path.
+//! Comparisons and campaigns fly with this; it keeps no log.
 
 use controller::State;
 
@@ -36,8 +36,9 @@ impl Outcome {
     }
 }
 
-/// Flies `scenario` from `start` with everything random drawn from `seed`; `ground_p3` (m) is where a body that comes to it ends the
-/// flight. `watch` sees every period. `None` of a flight that was interrupted.
+/// Flies `scenario` from `start` with everything random drawn from `seed`; `ground_p3` (m) is where
+/// a body that comes to it ends the flight. `watch` sees every period. `None` of a flight that was
+/// interrupted.
 pub fn judge(
     scenario: &Scenario,
     start: State<f64>,

@@ -9,7 +9,8 @@ use controller::Vector3;
 /// d_C below which a flight counts as settled, m.
 pub const SETTLED_M: f64 = 0.05;
 
-/// The numbers of one flight; one that does not apply is absent. The reference numbers have the same form.
+/// The numbers of one flight; one that does not apply is absent. The reference numbers have the
+/// same form.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Results {
@@ -190,7 +191,8 @@ impl<'a> Metrics<'a> {
     }
 }
 
-/// Errors of radius (m), p3 (m) and speed along (−p2, p1, 0)/r (m/s), against those of `circle` ([`Law::circle`]).
+/// Errors of radius (m), p3 (m) and speed along (−p2, p1, 0)/r (m/s), against those of `circle`
+/// ([`Law::circle`]).
 #[must_use]
 pub fn circle_errors(p: &Vector3<f64>, v: &Vector3<f64>, [radius, height, speed]: [f64; 3]) -> [f64; 3] {
     let from_axis = p.x.hypot(p.y);

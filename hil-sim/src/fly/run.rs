@@ -19,7 +19,8 @@ pub enum Arithmetic {
     F32,
     /// As a reference.
     F64,
-    /// As on the target, stopping at the first invalid operation: it panics, naming the operation and its place.
+    /// As on the target, stopping at the first invalid operation: it panics, naming the operation
+    /// and its place.
     Trapped,
 }
 

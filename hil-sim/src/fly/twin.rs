@@ -1,5 +1,6 @@
-//! An f64 twin beside a pilot: the same source in another scalar, with its own ζ and integrals, asked at the same states. What it answers
-//! moves nothing; its differences from the pilot are the pilot's rounding.
+//! An f64 twin beside a pilot: the same source in another scalar, with its own ζ and integrals,
+//! asked at the same states. What it answers moves nothing; its differences from the pilot are the
+//! pilot's rounding.
 
 use std::time::Duration;
 

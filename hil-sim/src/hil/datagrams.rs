@@ -13,11 +13,11 @@ const ROOM: usize = 1 << 20;
 /// The longest datagram that is read whole: any frame is shorter.
 const LONGEST: usize = 512;
 
-/// So long, ten times what an answer takes, the next datagram is looked for without sleeping: to be
-/// woken takes longer than an emulator does from one byte to the next, and the sender pays for it.
+/// How long to look for the next datagram without sleeping, ten times what an answer takes: waking
+/// up takes longer than an emulator's next byte, and the sender pays for it.
 const WATCHFUL: Duration = Duration::from_millis(5);
 
-/// Between looks after that.
+/// Time between looks after that.
 const NAP: Duration = Duration::from_micros(200);
 
 /// A connected socket, and what is read from it in order of arrival.

@@ -7,11 +7,13 @@ use super::HilError;
 use crate::describe::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
 
-/// The parameters with which a [`Rig`](rig::Rig) makes the law that `spec` describes. That is the law alone: so its supervisor gets the
-/// widest envelope there is, and rotors that give whatever the law's own limits let through.
+/// The parameters with which a [`Rig`](rig::Rig) makes the law that `spec` describes. That is the
+/// law alone: so its supervisor gets the widest envelope there is, and rotors that give whatever
+/// the law's own limits let through.
 ///
 /// # Errors
-/// [`HilError::Unsupported`] for a path that has no parameters, or a number outside a parameter's range.
+/// [`HilError::Unsupported`] for a path that has no parameters, or a number outside a parameter's
+/// range.
 pub fn parameters(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
     let mut parameters = law(spec)?;
     if let Law::Follow { path, .. } = &spec.law {
@@ -38,7 +40,8 @@ pub fn law(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
     let ObserverParams { payload_bound, rod_bound, torque_bound, .. } = spec.observer;
     run_of(all, run!("OBS_MAX_LOAD" to "OBS_MAX_TAU"), [payload_bound, rod_bound, torque_bound])?;
     let ActuatorLimits { min_thrust, max_thrust, max_torque } = spec.limits;
-    // No limits are 10⁶ of either kind; the table's range ends sooner, and further off than any flight.
+    // No limits are 10⁶ of either kind; the table's range ends sooner, and further off than any
+    // flight.
     run_of(all, run!("LIM_T_MIN" to "LIM_T_MAX"), [min_thrust.max(0.0), max_thrust.min(1e4)])?;
     run_of(all, run!("LIM_TAU_1" to "LIM_TAU_3"), max_torque.map(|torque| torque.min(1e3)))?;
     open_up(all)?;

@@ -26,7 +26,7 @@ pub use stm32h743::*;
 
 /// A board that has started: clocks up, watchdog running, rotors off.
 pub struct Board {
-    /// What was found out.
+    /// What was found out at the start.
     pub boot: Boot,
     /// The control timer, not yet set.
     pub timer: Timer,
@@ -76,7 +76,7 @@ pub trait Led {
 
 /// Resets the board when it is not fed for half a second.
 pub trait Watchdog {
-    /// Not now.
+    /// Puts the reset off.
     fn feed(&mut self);
 }
 
@@ -104,7 +104,7 @@ pub fn set_pulse(output: &mut impl SetDutyCycle, command: f32) {
     const FULL: f32 = 0.002 * 400.0;
     const STOP: f32 = 0.001 * 400.0;
     let share = STOP + (FULL - STOP) * command.clamp(0.0, 1.0);
-    // A command that is no number: stop.
+    // A NaN stops the rotor.
     let share = if share >= STOP { share } else { STOP };
     let ticks = (share * f32::from(output.max_duty_cycle())) as u16;
     let _ = output.set_duty_cycle(ticks);

@@ -44,7 +44,7 @@ fn schema(topic: &str, columns: &[Column]) -> Vec<u8> {
     json!({ "title": topic, "type": "object", "properties": properties }).to_string().into_bytes()
 }
 
-/// A row of a topic; JSON has no number that is not finite, so there is none.
+/// A row of a topic; JSON has no NaN and no infinity: such a value is left out.
 fn message(columns: &[Column], row: usize) -> Vec<u8> {
     let mut text = String::from("{");
     for column in columns {

@@ -13,10 +13,12 @@ const SMALLEST: f64 = 1e-6;
 /// A node, and what `evaluate` found there.
 pub type Point<D> = (Node, D);
 
-/// Looks for a jump between neighbouring `points`: which of the `errors`, and where. None is looked for beyond it.
+/// Looks for a jump between neighbouring `points`: which of the `errors`, and where. None is looked
+/// for beyond it.
 ///
-/// `errors` says how far each quantity, as a part of its size, is from what the point before foretells. Where one is far, the stretch
-/// between is halved, towards the larger error: of what is smooth it falls, at a jump it stays.
+/// `errors` says how far each quantity, as a part of its size, is from what the point before
+/// foretells. Where one is far, the stretch between is halved, towards the larger error: of what is
+/// smooth it falls, at a jump it stays.
 ///
 /// # Errors
 /// [`Refusal`] of a point between that has no derivatives.

@@ -1,8 +1,10 @@
-//! The comparison a reviewer would ask for: the law as published, with integral action, with disturbance observers, and trajectory
-//! tracking with the same observers, at equal poles, over the same starts and the same faults of the world.
+//! The comparison a reviewer would ask for: the law as published, with integral action, with
+//! disturbance observers, and trajectory tracking with the same observers, at equal poles, over the
+//! same starts and the same faults of the world.
 //!
-//! Table I's vehicle flies the circle of 5 m at 1 m/s for 40 s, at 500 Hz. A flight is good when d_C stays below 25 cm in its last
-//! quarter. Known lag and latency are compensated by every law alike.
+//! Table I's vehicle flies the circle of 5 m at 1 m/s for 40 s, at 500 Hz. A flight is good when
+//! d_C stays below 25 cm in its last quarter. Known lag and latency are compensated by every law
+//! alike.
 
 mod cases;
 mod page;
@@ -33,7 +35,7 @@ use crate::world::random::Purpose;
 pub enum Contender {
     /// As the paper has it.
     Published,
-    /// With its integral action (15).
+    /// With its integral action (5.4).
     Integral,
     /// With disturbance observers.
     Observer,
@@ -79,7 +81,8 @@ pub struct Row {
     pub good: usize,
     /// Median over flights of the largest d_C in the last quarter, m.
     pub median_dc_m: f64,
-    /// Root mean square of d_C over the last quarters of all flights, m; one that was lost counts as 100 m throughout.
+    /// Root mean square of d_C over the last quarters of all flights, m; one that was lost counts
+    /// as 100 m throughout.
     pub rms_dc_m: f64,
     /// Largest d_C in a last quarter, m.
     pub max_dc_m: f64,
@@ -128,7 +131,8 @@ pub fn contend(base: &Scenario, contender: Contender, bandwidth: f64) -> Scenari
             controller.observer = ObserverParams::with_bandwidth(bandwidth);
             if let (Some([radius, p3, speed]), Law::Follow { gains, .. }) = (controller.law.circle(), &controller.law)
             {
-                // The path's poles, with the sixth of the surfaces' for the coordinate that speed was. The reference turns from n2 to n1.
+                // The path's poles, with the sixth of the surfaces' for the coordinate that speed
+                // was. The reference turns from n2 to n1.
                 let gains = TrackGains { position: [gains.k1; 3], yaw: gains.k4 };
                 controller.law = Law::Track { reference: ReferenceSpec { radius, p3, rate: -speed / radius }, gains };
             }
@@ -219,7 +223,7 @@ fn row(case: &Case, law: Contender, flights: &[(Outcome, Vec<f32>)]) -> Row {
     }
 }
 
-/// The `share` percentile, linear between values; sorts `values`. Zero of none.
+/// The `share` percentile, linear between values; sorts `values`; 0 if there are none.
 pub fn percentile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };

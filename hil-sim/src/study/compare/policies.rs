@@ -1,8 +1,11 @@
-//! Path following against trajectory tracking, start by start: where the paper's two claims hold, and where they do not.
+//! Path following against trajectory tracking, start by start: where the paper's two claims hold,
+//! and where they do not.
 //!
-//! A1: stopped on its path and released, path following goes on from where it is; tracking leaves the path to catch up with its
-//! reference. A2: path following comes to the path sooner, without leaving it again, at less effort. The paper compares unequal poles (2 against 1.5);
-//! here tracking flies with equal poles, and with poles three quarters as fast. All have the same observers.
+//! A1: stopped on its path and released, path following goes on from where it is; tracking leaves
+//! the path to catch up with its reference. A2: path following comes to the path sooner, without
+//! leaving it again, at less effort. The paper compares unequal poles (2 against 1.5); here
+//! tracking flies with equal poles, and with poles three quarters as fast. All have the same
+//! observers.
 //!
 //! The reference starts at the point of the circle about which starts are drawn.
 
@@ -93,7 +96,8 @@ pub struct Line {
     quantity: Quantity,
     /// Medians of the policies in their order.
     pub medians: [f64; 3],
-    /// Share of starts in which path following was as good as tracking with equal and with slower poles, or better.
+    /// Share of starts in which path following was as good as tracking with equal and with slower
+    /// poles, or better.
     pub better: [f64; 2],
 }
 
