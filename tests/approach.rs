@@ -4,8 +4,8 @@
 //! and neither thrust nor torque steps when the law takes over.
 
 use controller::{
-    ActuatorLimits, ApproachLimits, Circle, Command, Follower, Gains, ObserverParams, Path, Pole, Sampling, State,
-    Vector3, Vehicle, VehicleParams, place,
+    ActuatorLimits, ApproachLimits, Circle, Command, Curve, Follower, Gains, Law, ObserverParams, Path, Sampling,
+    State, Vector3, Vehicle, VehicleParams,
 };
 use hil_sim::world::multibody::{Loads, Multibody, rotation};
 use hil_sim::world::random::{Purpose, Stream};
@@ -21,19 +21,12 @@ const PERIOD: f64 = 0.002;
 const TORQUE_STEP: f64 = 0.15;
 
 fn follower(bandwidth: f32) -> Follower<f32, impl Path<f32>> {
-    let spread: [f32; 6] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0];
-    let poles = |count: usize| spread.map(Pole::Real)[..count].to_vec();
-    let gains = Gains {
-        k1: place(&poles(6)).expect("stable poles"),
-        k2: place(&poles(6)).expect("stable poles"),
-        k3: place(&poles(5)).expect("stable poles"),
-        k4: place(&[-2.0, -3.0].map(Pole::Real)).expect("stable poles"),
-        integral: [0.0; 3],
-    };
+    let gains = Gains::spread(1.0).expect("stable poles");
     let vehicle = Vehicle::new(VehicleParams::paper()).expect("Table I");
-    let path = Circle::new(RADIUS as f32, P3 as f32).expect("a circle").at_speed(PATH_SPEED as f32);
+    let path =
+        Circle::new(RADIUS as f32, P3 as f32).and_then(|circle| circle.at_speed(PATH_SPEED as f32)).expect("a path");
     Follower::new(vehicle, path, gains, Sampling::every(PERIOD as f32))
-        .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(bandwidth)))
+        .and_then(|follower| follower.with_observer(ObserverParams::with_bandwidth(bandwidth)))
         .and_then(|follower| {
             follower.with_limits(ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] })
         })
@@ -90,9 +83,9 @@ fn join(seed: u64, bandwidth: f32) -> Extremes {
     let mut follower = follower(bandwidth);
     let hover = f64::from(follower.vehicle().hover_thrust());
     let applied = Command { thrust: hover as f32, torque: Vector3::zeros() };
-    let limits = ApproachLimits::gentle(follower.vehicle());
-    assert!(follower.join(&state.cast(), applied, &limits), "seed {seed}: no point of the path was found");
-    let slide = f64::from(follower.approach().remaining());
+    let pace = ApproachLimits::gentle().pace(follower.vehicle()).expect("limits in range");
+    follower.join(&state.cast(), applied, &pace).unwrap_or_else(|refused| panic!("seed {seed}: {refused}"));
+    let slide = f64::from(follower.law().approach().remaining());
     // The rod's own period, as of a pendulum from a UAV held still.
     let swing = TAU * (2.0_f64 / 9.81).sqrt();
     let mut seen = Extremes { calm_thrust: [f64::INFINITY, 0.0], ..Extremes::default() };
@@ -128,8 +121,9 @@ fn join(seed: u64, bandwidth: f32) -> Extremes {
 }
 
 #[test]
-fn engaging_twenty_metres_away_keeps_the_limits_and_does_not_overshoot() {
-    let limits = ApproachLimits::gentle(&Vehicle::new(VehicleParams::<f64>::paper()).expect("Table I"));
+fn joining_from_twenty_metres_away_keeps_the_limits_and_does_not_overshoot() {
+    let limits = ApproachLimits::<f64>::gentle();
+    let hover = f64::from(Vehicle::new(VehicleParams::<f32>::paper()).expect("Table I").hover_thrust());
     for bandwidth in [0.0, 8.0] {
         for seed in 0..20 {
             let seen = join(seed, bandwidth);
@@ -138,7 +132,8 @@ fn engaging_twenty_metres_away_keeps_the_limits_and_does_not_overshoot() {
             assert!(seen.calm_rod <= limits.rod_angle, "{told}");
             // The limit is the slide's; the path's own speed comes on top.
             assert!(seen.calm_speed <= limits.speed + PATH_SPEED, "{told}");
-            assert!(seen.calm_thrust[0] >= limits.min_thrust && seen.calm_thrust[1] <= limits.max_thrust, "{told}");
+            let [least, largest] = seen.calm_thrust.map(|thrust| thrust / hover);
+            assert!(least >= limits.min_thrust && largest <= limits.max_thrust, "{told}");
             assert!(seen.first_thrust <= 0.01, "{told}");
             assert!(seen.first_torque <= TORQUE_STEP && seen.torque_step <= TORQUE_STEP, "{told}");
             assert!(seen.overshoot <= 0.1 && seen.end <= 0.01, "{told}");

@@ -1,9 +1,9 @@
 //! The closed-form law against reference vectors that were computed in binary128 by differentiating the paper's equations.
 
-use controller::law::follow::{self, Gains};
-use controller::law::track::{self, Reference, TrackGains};
-use controller::path::{AlongTangent, Bent, ConstantSpeed, Ellipse, Formula, Implicit, Linear, Profiled};
-use controller::{Analytic, Circle, Disturbance, OutOfRange, Path, Real, State, Vector3, Vehicle, VehicleParams};
+use controller::{
+    AlongTangent, Analytic, Bent, Circle, Curve, Disturbance, Ellipse, Formula, Gains, Implicit, Linear, OutOfRange,
+    Path, Profiled, Real, Reference, State, TrackGains, Vector3, Vehicle, VehicleParams, follow, track,
+};
 use tests::golden::{self, Follow, LawMeta, relative_error};
 
 /// Relative errors of every vector, quantity by quantity.
@@ -87,7 +87,7 @@ fn follow_errors<T: Real, P: Path<T>>(file: &str, path: impl Fn(&[T]) -> Result<
         ];
         let parameters: Vec<T> = vector.path.iter().copied().map(T::lit).collect();
         for (gains, expected) in settings {
-            let solution = follow::law(
+            let solution = follow(
                 &vehicle(&vector.par),
                 &mut path(&parameters).unwrap(),
                 &gains,
@@ -117,7 +117,7 @@ fn track_errors<T: Real>() -> Errors {
         let reference = Reference::circle(T::lit(5.0), T::lit(-10.0), T::one(), T::lit(vector.t));
         let zeta = vector.zeta.map(T::lit);
         let solution =
-            track::law(&vehicle(&vector.par), &gains, &reference, &state(&vector.x), &zeta, &Disturbance::none());
+            track(&vehicle(&vector.par), &gains, &reference, &state(&vector.x), &zeta, &Disturbance::none());
         let torque = solution.command.torque.map(T::to_f64);
         let [p1, p2, p3] = solution.xi.position;
         let xi = [&p1[..], &p2, &p3, &solution.xi.yaw].concat();
@@ -142,12 +142,12 @@ const F32_TORQUE_NORMALIZED: f64 = 6e-6;
 const F32_OUTPUTS: f64 = 2e-6;
 
 fn circle<T: Real>(parameters: &[T]) -> Result<impl Path<T> + use<T>, OutOfRange<T>> {
-    Ok(Circle::new(parameters[0], parameters[1])?.at_speed(parameters[2]))
+    Circle::new(parameters[0], parameters[1])?.at_speed(parameters[2])
 }
 
 fn ellipse<T: Real>(parameters: &[T]) -> Result<impl Path<T> + use<T>, OutOfRange<T>> {
     let [a, b, c0, c1, speed] = *parameters else { panic!("five parameters") };
-    Ok(Profiled { curve: Ellipse::new(a, b, c0, c1)?, speed: ConstantSpeed(speed), yaw: AlongTangent })
+    Ok(Ellipse::new(a, b, c0, c1)?.at_speed(speed)?.with_yaw(AlongTangent))
 }
 
 /// The ellipse as a user would write it.
@@ -166,23 +166,22 @@ impl<T: Real> Implicit<T> for EllipseFormula<T> {
 
 fn ellipse_formula<T: Real>(parameters: &[T]) -> Result<impl Path<T> + use<T>, OutOfRange<T>> {
     let [a, b, c0, c1, speed] = *parameters else { panic!("five parameters") };
-    let curve = Formula(EllipseFormula { a, b, c0, c1 });
-    Ok(Profiled { curve, speed: ConstantSpeed(speed), yaw: AlongTangent })
+    Ok(Formula(EllipseFormula { a, b, c0, c1 }).at_speed(speed)?.with_yaw(AlongTangent))
 }
 
 /// v_d = v0 + v1 p1/a.
-fn bent_speed<T: Real>(a: T, v0: T, v1: T) -> Formula<Linear<T>> {
-    Formula(Linear { value: v0, gradient: Vector3::new(v1 / a, T::zero(), T::zero()) })
+fn bent_speed<T: Real>(a: T, v0: T, v1: T) -> Result<Formula<Linear<T>>, OutOfRange<T>> {
+    Linear::new(v0, Vector3::new(v1 / a, T::zero(), T::zero())).map(Formula)
 }
 
 /// ψ_d = 0.2 p1.
-fn bent_yaw<T: Real>() -> Formula<Linear<T>> {
-    Formula(Linear { value: T::zero(), gradient: Vector3::new(T::lit(0.2), T::zero(), T::zero()) })
+fn bent_yaw<T: Real>() -> Result<Formula<Linear<T>>, OutOfRange<T>> {
+    Linear::new(T::zero(), Vector3::new(T::lit(0.2), T::zero(), T::zero())).map(Formula)
 }
 
 fn bent<T: Real>(parameters: &[T]) -> Result<impl Path<T> + use<T>, OutOfRange<T>> {
     let [a, b, c0, v0, v1] = *parameters else { panic!("five parameters") };
-    Ok(Profiled { curve: Bent::new(a, b, c0)?, speed: bent_speed(a, v0, v1), yaw: bent_yaw() })
+    Ok(Profiled { curve: Bent::new(a, b, c0)?, speed: bent_speed(a, v0, v1)?, yaw: bent_yaw()? })
 }
 
 /// The bent curve as a user would write it.
@@ -202,7 +201,7 @@ impl<T: Real> Implicit<T> for BentFormula<T> {
 fn bent_formula<T: Real>(parameters: &[T]) -> Result<impl Path<T> + use<T>, OutOfRange<T>> {
     let [a, b, c0, v0, v1] = *parameters else { panic!("five parameters") };
     let curve = Formula(BentFormula { a, b, c0 });
-    Ok(Profiled { curve, speed: bent_speed(a, v0, v1), yaw: bent_yaw() })
+    Ok(Profiled { curve, speed: bent_speed(a, v0, v1)?, yaw: bent_yaw()? })
 }
 
 #[test]

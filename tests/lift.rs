@@ -4,10 +4,10 @@
 use controller::Disturbance;
 use controller::Yaw;
 use controller::dynamics::Model;
-use controller::law::compensator::propagate;
-use controller::law::lift::{Lift, lift};
-use controller::law::lower::lower;
+use controller::lower;
+use controller::propagate;
 use controller::{Command, Matrix3, State, Vector3, Vehicle, VehicleParams};
+use controller::{Lift, lift};
 use proptest::prelude::*;
 
 /// Half the central difference's step, s: its square times the next derivatives is as small as what rounding leaves over the step.

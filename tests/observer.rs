@@ -3,8 +3,8 @@
 
 use controller::Disturbance;
 use controller::{
-    ActuatorLimits, Circle, Command, Follower, Gains, ObserverParams, Pole, Sampling, State, Vector3, Vehicle,
-    VehicleParams, place,
+    ActuatorLimits, Circle, Command, Curve, Follower, Gains, ObserverParams, Sampling, State, Vector3, Vehicle,
+    VehicleParams,
 };
 use hil_sim::world::multibody::{Loads, Multibody};
 use std::ops::Range;
@@ -50,19 +50,11 @@ struct Sample {
 
 /// Flies from a metre off the path, at rest.
 fn fly(setting: &Setting) -> Vec<Sample> {
-    let spread: [f32; 6] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0];
-    let poles = |count: usize| spread.map(Pole::Real)[..count].to_vec();
-    let gains = Gains {
-        k1: place(&poles(6)).expect("stable poles"),
-        k2: place(&poles(6)).expect("stable poles"),
-        k3: place(&poles(5)).expect("stable poles"),
-        k4: place(&[-2.0, -3.0].map(Pole::Real)).expect("stable poles"),
-        integral: [0.0; 3],
-    };
+    let gains = Gains::spread(1.0).expect("stable poles");
     let vehicle = Vehicle::new(VehicleParams::paper()).expect("Table I");
-    let path = Circle::new(RADIUS as f32, P3 as f32).expect("a circle").at_speed(1.0);
+    let path = Circle::new(RADIUS as f32, P3 as f32).and_then(|circle| circle.at_speed(1.0)).expect("a path");
     let mut follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD as f32))
-        .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(setting.bandwidth)))
+        .and_then(|follower| follower.with_observer(ObserverParams::with_bandwidth(setting.bandwidth)))
         .and_then(|follower| {
             follower.with_limits(ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] })
         })
@@ -70,7 +62,7 @@ fn fly(setting: &Setting) -> Vec<Sample> {
 
     let state = State::at_rest(Vector3::new(RADIUS + 0.6, 0.0, P3 - 0.8));
     let mut body = Multibody::new(VehicleParameters { payload_mass: setting.mass, ..Default::default() }, &state);
-    follower.take_over(&state.cast(), Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() });
+    follower.take_over(&state.cast(), Command::of_thrust(vehicle.hover_thrust())).expect("a good state");
     let (onset, payload_force) = setting.force;
     (0..(setting.duration / PERIOD) as u32)
         .map(|step| {

@@ -1,9 +1,9 @@
 //! Every curve and profile: its series against itself at other times, its gradients, its geometry in closed form, and the
 //! Fourier path's nearest point against a search in double precision.
 
-use controller::path::{
-    AlongTangent, Bent, ConstantSpeed, CurvatureLimited, Curve, Curved, Ellipse, FixedYaw, Formula, FourierPath,
-    Harmonics, Implicit, Linear, PointingAt, Profiled, ScalarField, Superellipse, Tilted,
+use controller::{
+    AlongTangent, Bent, CurvatureLimited, Curve, Curved, Ellipse, FixedYaw, Formula, FourierPath, Harmonics,
+    Implicit, Linear, PointingAt, Profiled, ScalarField, Superellipse, Tilted,
 };
 use controller::{Analytic, Circle, Path, Real, Series, Vector3};
 use proptest::prelude::*;
@@ -142,22 +142,22 @@ impl ScalarField<f64> for Everything {
 
 #[test]
 fn curves_have_consistent_series_and_gradients() {
-    let linear = || Formula(Linear { value: 0.2, gradient: Vector3::new(0.1, -0.2, 0.3) });
+    let linear = || Formula(Linear::new(0.2, Vector3::new(0.1, -0.2, 0.3)).unwrap());
     let limited = CurvatureLimited::new(3.0, 1.0).unwrap();
     let circle = Circle::new(4.5, -10.0).unwrap();
     let ellipse = Ellipse::new(5.0, 4.0, -10.0, 0.2).unwrap();
     let bent = Bent::new(5.0, 4.0, -10.0).unwrap();
-    check_series("circle", &mut circle.at_speed(1.0));
+    check_series("circle", &mut circle.at_speed(1.0).unwrap());
     check_series("ellipse", &mut Profiled { curve: ellipse, speed: linear(), yaw: AlongTangent });
     check_series("superellipse", &mut Profiled { curve: superellipse(), speed: linear(), yaw: linear() });
-    let pointing = Formula(PointingAt { x: 1.0, y: -1.0 });
-    check_series("bent", &mut Profiled { curve: bent, speed: ConstantSpeed(1.0), yaw: pointing });
-    check_series("tilted", &mut Profiled { curve: tilted(), speed: ConstantSpeed(-2.0), yaw: AlongTangent });
+    let pointing = Formula(PointingAt::new(1.0, -1.0).unwrap());
+    check_series("bent", &mut bent.at_speed(1.0).unwrap().with_yaw(pointing));
+    check_series("tilted", &mut tilted().at_speed(-2.0).unwrap().with_yaw(AlongTangent));
     let formula = Formula(Everything);
     check_series("formula", &mut Profiled { curve: formula, speed: Formula(Everything), yaw: Formula(Everything) });
     check_series("Fourier", &mut Profiled { curve: knot(), speed: linear(), yaw: AlongTangent });
 
-    let yaw = FixedYaw(0.3);
+    let yaw = FixedYaw::new(0.3).unwrap();
     check_series("limited on a circle", &mut Profiled { curve: circle, speed: limited, yaw });
     check_series("limited on an ellipse", &mut Profiled { curve: ellipse, speed: limited, yaw });
     check_series("limited on a superellipse", &mut Profiled { curve: superellipse(), speed: limited, yaw });
@@ -251,7 +251,7 @@ fn limited_speed_keeps_its_bound() {
     let (top, bound) = (6.0, 2.0);
     let speed = CurvatureLimited::new(top, bound).unwrap();
     for radius in [0.5, 5.0, 500.0] {
-        let mut path = Profiled { curve: Circle::new(radius, -10.0).unwrap(), speed, yaw: FixedYaw(0.0) };
+        let mut path = Circle::new(radius, -10.0).unwrap().with_speed(speed);
         let mut motion = [Vector3::zeros(); 6];
         motion[0] = Vector3::new(radius, 0.0, -10.0);
         let v = -path.outputs(&series(&motion)).speed_error.value();
@@ -273,7 +273,7 @@ fn yaw_has_no_seam() {
         motion[1] = Vector3::new(-sin, cos, 0.0) * (radius * rate);
         motion[2] = Vector3::new(-cos, -sin, 0.0) * (0.5 * radius * rate * rate);
         let curve = Circle::new(radius, -10.0).unwrap();
-        let yaw = Profiled { curve, speed: ConstantSpeed(1.0), yaw: AlongTangent }.outputs(&series(&motion)).yaw;
+        let yaw = curve.at_speed(1.0).unwrap().with_yaw(AlongTangent).outputs(&series(&motion)).yaw;
         let error = angle + std::f64::consts::FRAC_PI_2 - yaw.value();
         assert!((error / std::f64::consts::TAU - (error / std::f64::consts::TAU).round()).abs() < 1e-14);
         assert!((yaw.derivative(1) - rate).abs() < 1e-14 && yaw.derivative(2).abs() < 1e-14);
@@ -429,16 +429,16 @@ proptest! {
 #[test]
 fn a_yaw_more_by_whole_turns_is_the_same_yaw() {
     use controller::Disturbance;
-    use controller::law::follow::law;
+    use controller::follow;
     use controller::{Gains, State, Vehicle, VehicleParams};
 
     let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).unwrap();
     let gains = Gains { k1: [1.0; 6], k2: [1.0; 6], k3: [1.0; 5], k4: [2.0, 3.0], integral: [0.0; 3] };
     let state = State::at_rest(Vector3::new(5.0, 0.0, -10.0));
     let answer = |yaw: f64| {
-        let mut path =
-            Profiled { curve: Circle::new(5.0, -10.0).unwrap(), speed: ConstantSpeed(0.0), yaw: FixedYaw(yaw) };
-        law(&vehicle, &mut path, &gains, &state, &[0.0; 4], &[0.0; 3], &Disturbance::none())
+        let curve = Circle::new(5.0, -10.0).unwrap();
+        let mut path = curve.at_speed(0.0).unwrap().with_yaw(FixedYaw::new(yaw).unwrap());
+        follow(&vehicle, &mut path, &gains, &state, &[0.0; 4], &[0.0; 3], &Disturbance::none())
     };
     for yaw in [-3.0, -0.3, 0.0, 1.0, 3.1] {
         for turns in [-15.0, -2.0, -1.0, 1.0, 2.0, 15.0] {

@@ -1,9 +1,7 @@
 //! Closed loops in continuous time: the f64 law on the plant, integrated adaptively, against the reference trajectories.
 
-use controller::{Command, Disturbance};
 use controller::{
-    Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams,
-    law::{follow, track},
+    Command, Disturbance, Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams, follow, track,
 };
 use hil_sim::describe::course::parse_path;
 use hil_sim::describe::input::Invalid;
@@ -111,7 +109,7 @@ fn follows(name: &str, path: &(impl Path<f64> + Clone)) {
         integral: reference.integral_gains.unwrap_or_default(),
     };
     compare(name, reference, |_, state, zeta, integral| {
-        let solution = follow::law(&vehicle, &mut path.clone(), &gains, state, zeta, integral, &Disturbance::none());
+        let solution = follow(&vehicle, &mut path.clone(), &gains, state, zeta, integral, &Disturbance::none());
         let xi = &solution.xi;
         // The reference has no ξ̃ where it has no integral action.
         let integrand = if reference.integral_gains.is_some() { [xi.h1[0], xi.h2[0], xi.h3[0]] } else { [0.0; 3] };
@@ -161,7 +159,7 @@ fn trajectory_tracking_of_figure_3() {
     };
     compare(name, reference, |t, state, zeta, _| {
         let wanted = Reference::circle(5.0, -10.0, 1.0, t);
-        let solution = track::law(&vehicle, &gains, &wanted, state, zeta, &Disturbance::none());
+        let solution = track(&vehicle, &gains, &wanted, state, zeta, &Disturbance::none());
         Answer { input: input(&solution.command), u_zeta: solution.u_zeta, integrand: [0.0; 3] }
     });
 }

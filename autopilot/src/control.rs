@@ -9,11 +9,11 @@
 //!
 //! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
 //! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
-//! the supervisor (`controller::flight::supervisor`, which has the modes' table) on what there is: a state that is missing is one that is no
-//! number, and it knows what to do then. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a
+//! the supervisor (`controller::Supervisor`, which has the modes' table) on what there is: a missing state is passed on as
+//! absent; the supervisor coasts, then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a
 //! guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
 
-use controller::{Command, Fault, Mode, Request, State, Vector3};
+use controller::{Command, Fault, Mode, Request, State};
 use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
@@ -86,8 +86,6 @@ pub struct Autopilot {
     request: Request,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
-    /// The last control period had no state.
-    blind: bool,
     newest_usec: Option<u64>,
     last: Option<Answer>,
     overrun: bool,
@@ -105,7 +103,6 @@ impl Autopilot {
             rig: None,
             request: Request::Idle,
             inbox: None,
-            blind: false,
             newest_usec: None,
             last: None,
             overrun: false,
@@ -156,12 +153,6 @@ impl Autopilot {
     #[must_use]
     pub fn is_armed(&self) -> bool {
         self.rig.is_some()
-    }
-
-    /// Whether the last control period had no state.
-    #[must_use]
-    pub fn is_blind(&self) -> bool {
-        self.blind
     }
 
     /// Asks for something, now or for after arming. `false` if the law does not know it: tracking only follows.
@@ -307,7 +298,6 @@ impl Autopilot {
     fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         let mut faults = self.standing_faults();
         self.overrun = false;
-        self.blind = frame.is_none();
         let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
         let state = frame.filter(|frame| may_start(frame)).map(link::state_of);
         let good = state.as_ref().filter(|state| state.check().is_ok());
@@ -377,14 +367,16 @@ impl Autopilot {
 /// What a good state does to the controller's memory before the step on it.
 fn begin(rig: &mut Rig<f32>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
     let is_off = rig.mode() == Mode::Off;
-    let hover = Command { thrust: rig.vehicle().hover_thrust(), torque: Vector3::zeros() };
+    let hover = Command::of_thrust(rig.vehicle().hover_thrust());
     let applied = if is_off { hover } else { rig.output().command };
-    match frame.action {
+    // A good state and finite numbers are not refused; if they were, the law would be as it was.
+    let begun = match frame.action {
         LoadAction::LOAD_ACTION_START => rig.start(state, frame.zeta),
         LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
         LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
-        LoadAction::LOAD_ACTION_CONTINUE => {}
-    }
+        LoadAction::LOAD_ACTION_CONTINUE => Ok(()),
+    };
+    debug_assert!(begun.is_ok(), "{begun:?}");
 }
 
 /// Whether the frame has a finite ζ, if it is one to start with.

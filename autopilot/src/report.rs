@@ -19,6 +19,8 @@ pub fn mode(mode: Mode) -> LoadMode {
         Mode::Hold => LoadMode::LOAD_MODE_HOLD,
         Mode::Land => LoadMode::LOAD_MODE_LAND,
         Mode::Fault => LoadMode::LOAD_MODE_FAULT,
+        // One that the link has no number for yet flies, but neither joins nor follows.
+        _ => LoadMode::LOAD_MODE_HOLD,
     }
 }
 
@@ -42,22 +44,23 @@ pub fn margin(margin: Margin) -> LoadFault {
         Margin::Path => LoadFault::LOAD_FAULT_PATH,
         Margin::Reach => LoadFault::LOAD_FAULT_REACH,
         Margin::Yaw => LoadFault::LOAD_FAULT_YAW,
+        _ => LoadFault::LOAD_FAULT_LAW,
     }
 }
 
-/// The bit of a fault that stands. A state's has its bit where the state is found missing or bad, step by step.
+/// The bit of a fault that stands. A state's, missing or bad, has its bit where it is found, step by step.
 pub fn fault(fault: Fault) -> LoadFault {
     match fault {
-        Fault::State(_) => LoadFault::empty(),
         Fault::Margin(which) => margin(which),
         Fault::NotFinite => LoadFault::LOAD_FAULT_LAW,
         Fault::NoPath => LoadFault::LOAD_FAULT_NO_PATH,
         Fault::PayloadLost => LoadFault::LOAD_FAULT_PAYLOAD_LOST,
+        _ => LoadFault::empty(),
     }
 }
 
-/// What to tell the pilot. A state that is `missing` has nothing wrong with it.
-pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
+/// What to tell the pilot.
+pub fn text(mode: Mode, fault: Option<Fault>) -> Text {
     let mode = match mode {
         Mode::Off => "off",
         Mode::Idle => "idle",
@@ -66,10 +69,11 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
         Mode::Hold => "hold",
         Mode::Land => "landing",
         Mode::Fault => "fault",
+        _ => "flying",
     };
     let fault = match fault {
         None => "",
-        Some(Fault::State(_)) if missing => "no state",
+        Some(Fault::NoState) => "no state",
         Some(Fault::State(channel)) => match channel {
             Channel::Position => "bad position",
             Channel::Velocity => "bad velocity",
@@ -77,6 +81,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
             Channel::RodRate => "bad rod rate",
             Channel::Attitude => "bad attitude",
             Channel::BodyRate => "bad body rate",
+            _ => "bad state",
         },
         Some(Fault::Margin(margin)) => match margin {
             Margin::RodAngle => "rod too far from vertical",
@@ -86,10 +91,12 @@ pub fn text(mode: Mode, fault: Option<Fault>, missing: bool) -> Text {
             Margin::Path => "path nearly singular",
             Margin::Reach => "out of the path's reach",
             Margin::Yaw => "roll too large for a yaw",
+            _ => "outside its envelope",
         },
         Some(Fault::NotFinite) => "law's answer not finite",
         Some(Fault::NoPath) => "no point of the path found",
         Some(Fault::PayloadLost) => "payload lost",
+        Some(_) => "not ready",
     };
     let mut text = Text::new();
     let separator = if fault.is_empty() { "" } else { ": " };

@@ -115,7 +115,7 @@ impl Server {
             (Mode::Fault, _) | (_, Some(Fault::PayloadLost)) => MavSeverity::MAV_SEVERITY_CRITICAL,
             _ => MavSeverity::MAV_SEVERITY_WARNING,
         };
-        Some(status(severity, &report::text(mode, fault, autopilot.is_blind())))
+        Some(status(severity, &report::text(mode, fault)))
     }
 
     /// Acts on what the decoder found.

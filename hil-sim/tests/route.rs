@@ -1,7 +1,7 @@
 //! Paths as described by a user: the law against the witness on random formulas, and the errors of a description.
 
 use controller::Disturbance;
-use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, law::follow};
+use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, follow};
 use hil_sim::describe::course::{PathSpec, parse_path};
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ fn difference(path: &PathSpec, x: &[f64; 16], zeta: &[f64; 4]) -> Option<f64> {
     let mut route = path.build::<f64>().unwrap();
     let state = State::from_paper(x);
     route.search(&state.position);
-    let found = follow::law(
+    let found = follow(
         &Vehicle::new(VehicleParams::paper()).unwrap(),
         &mut route,
         &gains,

@@ -17,6 +17,9 @@ use crate::series::Series;
 /// A number with arithmetic and the elementary functions, over the scalar `T`.
 ///
 /// Outside a function's domain the result is NaN or infinite, never a panic.
+///
+/// A constant stands on the right, `x * 20.0`: with the number's kind left open, Rust knows no `20.0 * x`. Of a known
+/// [`Series`] both are the same.
 pub trait Analytic<T: Real>:
     Copy
     + Neg<Output = Self>

@@ -15,8 +15,14 @@ pub struct Command<T> {
 
 impl<T: Real> Command<T> {
     /// No thrust, no torque.
+    #[must_use]
     pub fn zero() -> Self {
         Self { thrust: T::zero(), torque: Vector3::zeros() }
+    }
+
+    /// This `thrust`, N, and no torque.
+    pub fn of_thrust(thrust: T) -> Self {
+        Self { thrust, torque: Vector3::zeros() }
     }
 
     /// Component by component, N and N·m.

@@ -22,6 +22,7 @@ pub struct Disturbance<T> {
 
 impl<T: Real> Disturbance<T> {
     /// None: the paper's model.
+    #[must_use]
     pub fn none() -> Self {
         Self {
             payload: Vector3::zeros(),

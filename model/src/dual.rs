@@ -184,3 +184,31 @@ impl<T: Real, A: Analytic<T>, const M: usize> Analytic<T> for Dual<A, M> {
         self.chain(value, -value.square() + T::one())
     }
 }
+
+/// The scalar on the left, as on the right; see the same of [`Series`](crate::Series).
+macro_rules! scalar_on_the_left {
+    ($($real:ty),*) => {$(
+        impl<A: Analytic<$real>, const M: usize> Add<Dual<A, M>> for $real {
+            type Output = Dual<A, M>;
+            #[inline]
+            fn add(self, dual: Dual<A, M>) -> Dual<A, M> {
+                dual + self
+            }
+        }
+        impl<A: Analytic<$real>, const M: usize> Sub<Dual<A, M>> for $real {
+            type Output = Dual<A, M>;
+            #[inline]
+            fn sub(self, dual: Dual<A, M>) -> Dual<A, M> {
+                -dual + self
+            }
+        }
+        impl<A: Analytic<$real>, const M: usize> Mul<Dual<A, M>> for $real {
+            type Output = Dual<A, M>;
+            #[inline]
+            fn mul(self, dual: Dual<A, M>) -> Dual<A, M> {
+                dual * self
+            }
+        }
+    )*};
+}
+scalar_on_the_left!(f32, f64);

@@ -7,7 +7,7 @@ use crate::scalar::Real;
 /// A parameter outside its allowed range. Names the field, the value and the range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfRange<T> {
-    /// The field's name, as in the struct that holds it.
+    /// The field's name, as in the struct that holds it, or what of several fields is out of range, in words.
     pub field: &'static str,
     /// The value given, in the field's unit.
     pub value: T,
@@ -19,11 +19,17 @@ pub struct OutOfRange<T> {
 
 impl<T: Real> OutOfRange<T> {
     /// `Ok` if `min` ≤ `value` ≤ `max`, which a NaN is not.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] of these.
     pub fn check(field: &'static str, value: T, min: f64, max: f64) -> Result<(), Self> {
         Self::within(field, value, T::lit(min), T::lit(max))
     }
 
     /// The same with bounds that come from other parameters.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] of these.
     pub fn within(field: &'static str, value: T, min: T, max: T) -> Result<(), Self> {
         if value >= min && value <= max { Ok(()) } else { Err(Self { field, value, min, max }) }
     }

@@ -7,6 +7,7 @@
 //!
 //! One source, two scalars: everything is generic over [`Real`], `f32` on the target and `f64` as the reference.
 #![no_std]
+#![warn(clippy::must_use_candidate, clippy::missing_errors_doc)]
 
 mod analytic;
 mod command;
@@ -14,7 +15,7 @@ mod disturbance;
 mod dual;
 pub mod dynamics;
 mod error;
-mod frames;
+mod range;
 mod scalar;
 mod series;
 mod state;
@@ -28,8 +29,8 @@ pub use command::Command;
 pub use disturbance::Disturbance;
 pub use dual::{Dual, variables};
 pub use error::OutOfRange;
-pub use frames::{Frames, Uav};
 pub use nalgebra::{Matrix3, Vector3};
+pub use range::Range;
 pub use scalar::Real;
 pub use series::Series;
 pub use state::{Channel, State, is_within};
@@ -37,3 +38,8 @@ pub use state::{Channel, State, is_within};
 pub use trap::Trapped;
 pub use vehicle::{Vehicle, VehicleParams};
 pub use yaw::Yaw;
+
+/// The vehicle's parameters' ranges and defaults.
+pub mod ranges {
+    pub use crate::range::{GRAVITY, INERTIA, PAYLOAD_MASS, ROD_LENGTH, UAV_MASS};
+}

@@ -23,9 +23,9 @@ pub(crate) mod sealed {
         /// 1/k! for k up to 7.
         const PER_FACTORIAL: [Self; 8];
         /// 1.5 times two to the number of bits behind the point: added and taken away, it rounds to the nearest whole number.
-        const ROUND: Self;
-        /// As much as the numbers just above a half differ by.
-        const LITTLE: Self;
+        const ROUND_TO_WHOLE: Self;
+        /// Half of the distance between the numbers just above one.
+        const HALF_ULP: Self;
     }
 
     macro_rules! tables {
@@ -36,8 +36,8 @@ pub(crate) mod sealed {
                 const FACTORIAL: [Self; 8] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0];
                 const PER_FACTORIAL: [Self; 8] =
                     [1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
-                const ROUND: Self = 1.5 / <$real>::EPSILON;
-                const LITTLE: Self = <$real>::EPSILON / 2.0;
+                const ROUND_TO_WHOLE: Self = 1.5 / <$real>::EPSILON;
+                const HALF_ULP: Self = <$real>::EPSILON / 2.0;
             }
         };
     }
@@ -108,9 +108,9 @@ pub trait Real:
     /// The angle `self` − 2πk in (−π, π], to within the rounding of its turns. In `f32`: for up to 4 million of them.
     #[inline]
     fn wrap_angle(self) -> Self {
-        // Half a turn is none, minus half a turn is minus one: so a little less is rounded.
-        let turns = self * Self::lit(1.0 / core::f64::consts::TAU) - Self::LITTLE;
-        let whole = (turns + Self::ROUND) - Self::ROUND;
+        // +π must stay and −π become +π, so the tie is rounded from just below.
+        let turns = self * Self::lit(1.0 / core::f64::consts::TAU) - Self::HALF_ULP;
+        let whole = (turns + Self::ROUND_TO_WHOLE) - Self::ROUND_TO_WHOLE;
         self - whole * Self::lit(core::f64::consts::TAU)
     }
 }
@@ -217,7 +217,7 @@ impl Real for f64 {
 fn sin_cos_f32(x: f32) -> (f32, f32) {
     const RANGE: f32 = 8192.0;
     // The nearest integer then stands in the low bits of the sum.
-    const ROUND: f32 = <f32 as sealed::Sealed>::ROUND;
+    const ROUND: f32 = <f32 as sealed::Sealed>::ROUND_TO_WHOLE;
     const HALF_PI: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
 
     if !(-RANGE..=RANGE).contains(&x) {

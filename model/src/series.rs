@@ -83,7 +83,7 @@ impl<T: Real, const N: usize> Series<T, N> {
         Series(c)
     }
 
-    /// Takes `factor` · `other` away, as far as that goes.
+    /// Subtracts `factor` · `other` from the coefficients that both have; the others stay.
     #[inline]
     pub fn subtract<const M: usize>(&mut self, other: &Series<T, M>, factor: T) {
         subtract(&mut self.0, &other.0, factor);
@@ -214,3 +214,39 @@ impl<T: Real, const N: usize> Div<T> for Series<T, N> {
         self * (T::one() / constant)
     }
 }
+
+/// The scalar on the left, as on the right: `20.0 * x`, `1.0 - x`, `1.0 / x`. A formula that is generic over
+/// [`Analytic`](crate::Analytic) has it on the right only, since Rust does not carry bounds on the scalar from trait to user.
+macro_rules! scalar_on_the_left {
+    ($($real:ty),*) => {$(
+        impl<const N: usize> Add<Series<$real, N>> for $real {
+            type Output = Series<$real, N>;
+            #[inline]
+            fn add(self, series: Series<$real, N>) -> Series<$real, N> {
+                series + self
+            }
+        }
+        impl<const N: usize> Sub<Series<$real, N>> for $real {
+            type Output = Series<$real, N>;
+            #[inline]
+            fn sub(self, series: Series<$real, N>) -> Series<$real, N> {
+                -series + self
+            }
+        }
+        impl<const N: usize> Mul<Series<$real, N>> for $real {
+            type Output = Series<$real, N>;
+            #[inline]
+            fn mul(self, series: Series<$real, N>) -> Series<$real, N> {
+                series * self
+            }
+        }
+        impl<const N: usize> Div<Series<$real, N>> for $real {
+            type Output = Series<$real, N>;
+            #[inline]
+            fn div(self, series: Series<$real, N>) -> Series<$real, N> {
+                Series::constant(self) / series
+            }
+        }
+    )*};
+}
+scalar_on_the_left!(f32, f64);

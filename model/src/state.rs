@@ -7,6 +7,7 @@ use crate::scalar::Real;
 /// A part of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Channel {
     /// Payload position.
     Position,
@@ -116,11 +117,15 @@ impl<T: Real> State<T> {
         ]
     }
 
-    /// `Ok` if every number is one and the law can be trusted with them: position within 100 km, velocity within 1 km/s, rod rate and body
-    /// rate within 100 rad/s, |q| and the attitude's columns within 1 % of 1, and those a right-handed frame. NaN is none of it.
+    /// `Ok` if every number is finite and within the range the law is trusted with: position within 100 km, velocity
+    /// within 1 km/s, rod rate and body rate within 100 rad/s, |q| and the attitude's columns within 1 % of 1, and those
+    /// columns a right-handed frame.
+    ///
+    /// # Errors
+    /// The first [`Channel`] that is not.
     #[inline]
     pub fn check(&self) -> Result<(), Channel> {
-        // How far off one is what should be, squared.
+        // The squared distance from one.
         let off = |of_one: T| (of_one - T::one()) * (of_one - T::one());
         let tolerance = T::lit(0.02 * 0.02);
         let within = |v: &Vector3<T>, most: f64| is_within(v, T::lit(most * most));

@@ -98,8 +98,8 @@ impl Sealed for Trapped {
     const RECIPROCAL: [Self; 8] = table(<f32 as Sealed>::RECIPROCAL);
     const FACTORIAL: [Self; 8] = table(<f32 as Sealed>::FACTORIAL);
     const PER_FACTORIAL: [Self; 8] = table(<f32 as Sealed>::PER_FACTORIAL);
-    const ROUND: Self = Self(<f32 as Sealed>::ROUND);
-    const LITTLE: Self = Self(<f32 as Sealed>::LITTLE);
+    const ROUND_TO_WHOLE: Self = Self(<f32 as Sealed>::ROUND_TO_WHOLE);
+    const HALF_ULP: Self = Self(<f32 as Sealed>::HALF_ULP);
 }
 
 impl Real for Trapped {

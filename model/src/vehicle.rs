@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::error::OutOfRange;
+use crate::range::{GRAVITY, INERTIA, PAYLOAD_MASS, ROD_LENGTH, UAV_MASS};
 use crate::scalar::Real;
 
 /// What the law has to know of the vehicle, SI units.
@@ -12,7 +13,7 @@ pub struct VehicleParams<T> {
     pub payload_mass: T,
     /// UAV mass m_Q without the payload, kg.
     pub uav_mass: T,
-    /// Rod (cable) length L from the UAV's centre of mass to the payload, m.
+    /// Length L of the rod, which is the taut cable taken for rigid and massless, from the UAV's centre of mass to the payload, m.
     pub rod_length: T,
     /// Principal moments of inertia J of the UAV in body axes, kg·m².
     pub inertia: [T; 3],
@@ -25,11 +26,11 @@ impl<T: Real> VehicleParams<T> {
     #[must_use]
     pub fn paper() -> Self {
         Self {
-            payload_mass: T::lit(0.5),
-            uav_mass: T::lit(2.5),
-            rod_length: T::lit(2.0),
-            inertia: [0.03, 0.03, 0.05].map(T::lit),
-            gravity: T::lit(9.81),
+            payload_mass: PAYLOAD_MASS.default(),
+            uav_mass: UAV_MASS.default(),
+            rod_length: ROD_LENGTH.default(),
+            inertia: INERTIA.map(|range| range.default()),
+            gravity: GRAVITY.default(),
         }
     }
 }
@@ -73,16 +74,18 @@ pub struct Vehicle<T> {
 }
 
 impl<T: Real> Vehicle<T> {
-    /// Checks every parameter; an error names the first that is out of range.
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] names the first that is out of its [range](crate::ranges).
     pub fn new(params: VehicleParams<T>) -> Result<Self, OutOfRange<T>> {
-        OutOfRange::check("payload_mass", params.payload_mass, 1e-3, 1e3)?;
-        OutOfRange::check("uav_mass", params.uav_mass, 1e-2, 1e3)?;
-        OutOfRange::check("rod_length", params.rod_length, 0.05, 100.0)?;
-        let [j1, j2, j3] = params.inertia;
-        OutOfRange::check("inertia[0]", j1, 1e-6, 1e3)?;
-        OutOfRange::check("inertia[1]", j2, 1e-6, 1e3)?;
-        OutOfRange::check("inertia[2]", j3, 1e-6, 1e3)?;
-        OutOfRange::check("gravity", params.gravity, 0.1, 30.0)?;
+        PAYLOAD_MASS.check(params.payload_mass)?;
+        UAV_MASS.check(params.uav_mass)?;
+        ROD_LENGTH.check(params.rod_length)?;
+        for (range, &moment) in INERTIA.iter().zip(&params.inertia) {
+            range.check(moment)?;
+        }
+        GRAVITY.check(params.gravity)?;
 
         let arm = params.uav_mass * params.rod_length;
         let total = params.uav_mass + params.payload_mass;

@@ -1,6 +1,6 @@
 //! `LIM_*`, `ROT_*`: from what the law asks for to what the rotors are told.
 
-use controller::sampled::allocation::Place;
+use controller::Place;
 use controller::{Actuation, ActuatorLimits, Command, OutOfRange, Real, RotorParams, Rotors};
 
 use crate::entry::Entry;

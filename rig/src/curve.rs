@@ -3,11 +3,11 @@
 //! A new curve is a shape here: its name, the parameters that its numbers come from, and how it is made of them. Scenario files, the line
 //! to a target and the reference page of parameters have it from here.
 
-use controller::law::lift::PositionSeries;
-use controller::path::{
+use controller::PositionSeries;
+use controller::{Analytic, Circle, OutOfRange, Real, Series, Vector3};
+use controller::{
     Bent, Curve, Curved, Ellipse, Formula, FourierPath, Harmonics, Implicit, Located, Superellipse, Tilted,
 };
-use controller::{Analytic, Circle, OutOfRange, Real, Series, Vector3};
 
 use crate::entry::{Entry, Name};
 use crate::parameters::Parameters;

@@ -1,6 +1,6 @@
 //! `ENV_*`, `APP_*`, `POL_*`: the envelope, the approach to a path and the supervisor's policy.
 
-use controller::{ApproachLimits, Band, EnvelopeParams, Lost, Policy, Real, Vehicle};
+use controller::{ApproachLimits, Band, EnvelopeParams, Lost, Policy, Real};
 
 use crate::entry::{Entry, Name};
 use crate::parameters::Parameters;
@@ -148,7 +148,7 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<26>(&[
     ],
 ]);
 
-pub(crate) fn envelope<T: Real>(parameters: &Parameters<T>, vehicle: &Vehicle<T>) -> EnvelopeParams<T> {
+pub(crate) fn envelope<T: Real>(parameters: &Parameters<T>) -> EnvelopeParams<T> {
     let band = |[warning, limit]: [T; 2]| Band { warning, limit };
     let [rod_angle, thrust_angle, roll, tension, thrust, path, reach] = [
         run!("ENV_ROD_WARN" to "ENV_ROD_LIM"),
@@ -160,28 +160,17 @@ pub(crate) fn envelope<T: Real>(parameters: &Parameters<T>, vehicle: &Vehicle<T>
         run!("ENV_REACH_WARN" to "ENV_REACH_LIM"),
     ]
     .map(|run| band(parameters.run(run)));
-    let params = vehicle.params();
-    let of = |share: Band<T>, whole: T| Band { warning: share.warning * whole, limit: share.limit * whole };
-    EnvelopeParams {
-        rod_angle,
-        thrust_angle,
-        roll,
-        tension: of(tension, params.payload_mass * params.gravity),
-        thrust: of(thrust, vehicle.hover_thrust()),
-        path,
-        reach,
-    }
+    EnvelopeParams { rod_angle, thrust_angle, roll, tension, thrust, path, reach }
 }
 
-pub(crate) fn approach<T: Real>(parameters: &Parameters<T>, vehicle: &Vehicle<T>) -> ApproachLimits<T> {
-    let hover = vehicle.hover_thrust();
+pub(crate) fn approach<T: Real>(parameters: &Parameters<T>) -> ApproachLimits<T> {
     ApproachLimits {
         speed: parameters.get(parameter!("APP_SPEED")),
         acceleration: parameters.get(parameter!("APP_ACC")),
         tilt: parameters.get(parameter!("APP_TILT")),
         rod_angle: parameters.get(parameter!("APP_ROD")),
-        min_thrust: hover * parameters.get(parameter!("APP_T_MIN")),
-        max_thrust: hover * parameters.get(parameter!("APP_T_MAX")),
+        min_thrust: parameters.get(parameter!("APP_T_MIN")),
+        max_thrust: parameters.get(parameter!("APP_T_MAX")),
     }
 }
 

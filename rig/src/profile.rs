@@ -1,7 +1,7 @@
 //! `PATH_SPEED` to `PATH_YAW_Y`, `REF_RATE`: how fast a curve is flown and where the nose points.
 
-use controller::law::lift::PositionSeries;
-use controller::path::{
+use controller::PositionSeries;
+use controller::{
     AlongTangent, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Located, PointingAt, Profiled,
     ScalarField, SpeedProfile, YawProfile,
 };
@@ -102,7 +102,7 @@ impl<T: Real, F> AnySpeed<T, F> {
         Ok(if acceleration > T::zero() {
             Self::CurvatureLimited(CurvatureLimited::new(speed, acceleration).map_err(parameters.naming("PATH_"))?)
         } else {
-            Self::Constant(ConstantSpeed(speed))
+            Self::Constant(ConstantSpeed::new(speed).map_err(parameters.naming("PATH_"))?)
         })
     }
 }
@@ -115,9 +115,11 @@ impl<T: Real, F> AnyYaw<T, F> {
     pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
         let [x, y] = parameters.run(run!("PATH_YAW_X" to "PATH_YAW_Y"));
         Ok(match parameters.whole(parameter!("PATH_YAW_KIND")) {
-            0 => Self::Fixed(FixedYaw(parameters.get(parameter!("PATH_YAW")))),
+            0 => Self::Fixed(
+                FixedYaw::new(parameters.get(parameter!("PATH_YAW"))).map_err(parameters.naming("PATH_"))?,
+            ),
             1 => Self::Tangent(AlongTangent),
-            _ => Self::PointingAt(Formula(PointingAt { x, y })),
+            _ => Self::PointingAt(Formula(PointingAt::new(x, y).map_err(parameters.naming("PATH_YAW_"))?)),
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The controller as it flies: a supervised law of either kind, with limits and rotors.
 
 use controller::{
-    Command, Disturbance, Fault, Follower, Margin, Margins, Mode, Path, Real, Request, Solution, State, Supervisor,
-    Vector3, Vehicle, dynamics,
+    Command, Disturbance, Fault, Follow, Follower, Margin, Margins, Mode, Path, Real, Refused, Request, Solution,
+    State, Supervisor, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
@@ -22,7 +22,7 @@ pub struct Rig<T: Real, P = AnyPath<T>> {
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)]
 enum Law<T: Real, P> {
-    Follow(Supervisor<T, P, Actuators<T>>),
+    Follow(Supervisor<T, Follow<T, P>, Actuators<T>>),
     Track(Tracking<T>),
 }
 
@@ -91,17 +91,20 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
             let vehicle = vehicle::vehicle(parameters)?;
             let follower = Follower::new(vehicle, path, gains::gains(parameters), timing::sampling(parameters))?
                 .with_actuation(Actuators::new(parameters)?)?
-                .with_observer(&observer::observer(parameters))?;
-            let envelope = flight::envelope(parameters, &vehicle);
-            let approach = flight::approach(parameters, &vehicle);
-            Law::Follow(Supervisor::new(follower, &envelope, approach, flight::policy(parameters))?)
+                .with_observer(observer::observer(parameters))?;
+            let envelope = flight::envelope(parameters);
+            let approach = flight::approach(parameters);
+            Law::Follow(Supervisor::new(follower, envelope, approach, flight::policy(parameters))?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
         Ok(Self { law, last })
     }
 
     /// Starts on the path, from a stated ζ and with the integrals at zero.
-    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
+    ///
+    /// # Errors
+    /// The state or ζ is refused; nothing has changed.
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
         match &mut self.law {
             Law::Follow(supervisor) => supervisor.start(state, zeta),
             Law::Track(tracking) => tracking.start(state, zeta),
@@ -109,7 +112,10 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     }
 
     /// Takes over a flying vehicle from `applied`, without a bump in thrust.
-    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+    ///
+    /// # Errors
+    /// The state or command is refused; nothing has changed.
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
         match &mut self.law {
             Law::Follow(supervisor) => supervisor.take_over(state, applied),
             Law::Track(tracking) => tracking.take_over(state, applied),
@@ -119,12 +125,10 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// One control step on whatever state there is. The tracking law takes no request, and has a reference, which is at `phase` (rad) now.
     #[inline]
     pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
-        let missing = State::at_rest(Vector3::repeat(T::lit(f64::NAN)));
-        let state = state.unwrap_or(&missing);
         self.last = match &mut self.law {
             Law::Follow(supervisor) => {
                 let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
-                let actuators = supervisor.follower().actuation();
+                let actuators = supervisor.sampler().actuation();
                 let limited =
                     supervisor.solution().is_some_and(|solution| actuators.limit(&solution.command, &command));
                 Output { command, mode, fault, warning, limited }
@@ -176,7 +180,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[must_use]
     pub fn actuators(&self) -> &Actuators<T> {
         match &self.law {
-            Law::Follow(supervisor) => supervisor.follower().actuation(),
+            Law::Follow(supervisor) => supervisor.sampler().actuation(),
             Law::Track(tracking) => tracking.actuators(),
         }
     }
@@ -185,7 +189,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[must_use]
     pub fn zeta(&self) -> &[T; 4] {
         match &self.law {
-            Law::Follow(supervisor) => supervisor.follower().zeta(),
+            Law::Follow(supervisor) => supervisor.sampler().zeta(),
             Law::Track(tracking) => tracking.tracker().zeta(),
         }
     }
@@ -194,7 +198,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[must_use]
     pub fn integral(&self) -> [T; 3] {
         match &self.law {
-            Law::Follow(supervisor) => *supervisor.follower().integral(),
+            Law::Follow(supervisor) => *supervisor.law().integral(),
             Law::Track(_) => [T::zero(); 3],
         }
     }
@@ -212,7 +216,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle<T> {
         match &self.law {
-            Law::Follow(supervisor) => supervisor.follower().vehicle(),
+            Law::Follow(supervisor) => supervisor.sampler().vehicle(),
             Law::Track(tracking) => tracking.vehicle(),
         }
     }

@@ -1,7 +1,7 @@
 //! The tracking law and the least guard that it can fly with: a good state and a finite answer, or the policy's command without either.
 
 use controller::{
-    Actuation, Command, Fault, Lost, Mode, Real, Reference, Solution, State, TrackXi, Tracker, Vector3, Vehicle,
+    Actuation, Command, Fault, Lost, Mode, Real, Reference, Refused, Solution, State, TrackXi, Tracker, Vehicle,
 };
 
 use crate::actuators::Actuators;
@@ -36,7 +36,7 @@ impl<T: Real> Tracking<T> {
         let vehicle = vehicle::vehicle(parameters)?;
         let tracker = Tracker::new(vehicle, gains::track_gains(parameters), timing::sampling(parameters))?
             .with_limits(actuators.limits())?
-            .with_observer(&observer::observer(parameters))?;
+            .with_observer(observer::observer(parameters))?;
         let circle = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
         Ok(Self {
             tracker,
@@ -70,33 +70,39 @@ impl<T: Real> Tracking<T> {
     }
 
     /// Starts from a stated ζ.
-    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        self.tracker.start(state, zeta);
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
+        self.tracker.start(state, zeta)?;
         (self.mode, self.fault) = (Mode::Follow, None);
+        Ok(())
     }
 
     /// Goes on from `applied` without a bump in thrust.
-    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
-        self.tracker.take_over(state, applied);
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
+        self.tracker.take_over(state, applied)?;
         (self.mode, self.fault) = (Mode::Follow, None);
+        Ok(())
     }
 
     /// The command for the coming hold; `phase` (rad) is where the reference is now.
-    pub fn step(&mut self, state: &State<T>, phase: T) -> Tracked<T> {
+    pub fn step(&mut self, state: Option<&State<T>>, phase: T) -> Tracked<T> {
         self.solution = None;
         if self.mode == Mode::Off {
             return Tracked { command: Command::zero(), fault: None };
         }
+        let Some(state) = state else { return self.without(Some(Fault::NoState)) };
         if let Err(channel) = state.check() {
             return self.without(Some(Fault::State(channel)));
         }
-        match (self.mode, self.lost) {
+        let is_taken_over = match (self.mode, self.lost) {
             (Mode::Fault, Lost::Cut) => return self.without(self.fault),
             (Mode::Fault, Lost::Sink(_)) => self.take_over(state, self.lost_command()),
-            _ => {}
+            _ => Ok(()),
+        };
+        if is_taken_over.is_err() {
+            return self.without(self.fault);
         }
         let [radius, p3, rate] = self.circle;
-        let solution = self.tracker.step(state, &Reference::circle(radius, p3, rate, phase));
+        let solution = self.tracker.track(state, &Reference::circle(radius, p3, rate, phase));
         // The command is limited, which may make a number of what was none. And ζ is the law's memory: once it is no number, neither is
         // any later command.
         let mut numbers = solution.nu.iter().chain(self.tracker.zeta());
@@ -118,7 +124,7 @@ impl<T: Real> Tracking<T> {
             Lost::Cut => Command::zero(),
             Lost::Sink(share) => {
                 let thrust = share * self.vehicle().hover_thrust();
-                self.actuators.apply(&Command { thrust, torque: Vector3::zeros() })
+                self.actuators.apply(&Command::of_thrust(thrust))
             }
         }
     }

@@ -1,8 +1,9 @@
 //! A supervised vehicle in flight: the law, told what the world is or not, and the plant.
 
 use controller::{
-    ActuatorLimits, ApproachLimits, Circle, Command, EnvelopeParams, Follower, Gains, Mode, ObserverParams, Output,
-    Path, Pole, Policy, Request, Sampling, State, Supervisor, Vector3, Vehicle, VehicleParams, place,
+    ActuatorLimits, ApproachLimits, Circle, Command, Controller, Curve, EnvelopeParams, Follow, Follower, Gains, Law,
+    Mode, ObserverParams, Output, Path, Policy, Request, Sampling, State, Supervisor, Vector3, Vehicle,
+    VehicleParams,
 };
 use hil_sim::world::multibody::{Loads, Multibody};
 use witness::plant::VehicleParameters;
@@ -21,14 +22,7 @@ pub fn vehicle() -> Vehicle<f32> {
 
 /// Poles −1 to −6, and integral action where asked for.
 pub fn gains(integral: [f32; 3]) -> Gains<f32> {
-    let k = place(&[-1.0, -2.0, -3.0, -4.0, -5.0, -6.0].map(Pole::Real)).unwrap();
-    Gains {
-        k1: k,
-        k2: k,
-        k3: place(&[-1.0, -2.0, -3.0, -4.0, -5.0].map(Pole::Real)).unwrap(),
-        k4: place(&[-2.0, -3.0].map(Pole::Real)).unwrap(),
-        integral,
-    }
+    Gains { integral, ..Gains::spread(1.0).unwrap() }
 }
 
 /// A follower of the circle at `speed`, m/s, with observers of `bandwidth`, rad/s.
@@ -38,20 +32,22 @@ pub fn follower(
     sampling: Sampling<f32>,
     integral: [f32; 3],
 ) -> Follower<f32, impl Path<f32> + Clone> {
-    let path = Circle::new(CIRCLE[0] as f32, CIRCLE[1] as f32).unwrap().at_speed(speed);
+    let path = Circle::new(CIRCLE[0] as f32, CIRCLE[1] as f32).unwrap().at_speed(speed).unwrap();
     let follower = Follower::new(vehicle(), path, gains(integral), sampling).unwrap();
-    follower.with_limits(LIMITS).unwrap().with_observer(&ObserverParams::with_bandwidth(bandwidth)).unwrap()
+    follower.with_limits(LIMITS).unwrap().with_observer(ObserverParams::with_bandwidth(bandwidth)).unwrap()
 }
 
 /// The usual one: 1 m/s, observers on, and a policy.
-pub fn supervisor(sampling: Sampling<f32>, policy: Policy<f32>) -> Supervisor<f32, impl Path<f32> + Clone> {
+pub fn supervisor(
+    sampling: Sampling<f32>,
+    policy: Policy<f32>,
+) -> Supervisor<f32, Follow<f32, impl Path<f32> + Clone>> {
     supervise(follower(1.0, 4.0, sampling, [0.0; 3]), policy)
 }
 
-/// `follower`, supervised.
-pub fn supervise<P: Path<f32>>(follower: Follower<f32, P>, policy: Policy<f32>) -> Supervisor<f32, P> {
-    let vehicle = vehicle();
-    Supervisor::new(follower, &EnvelopeParams::wide(&vehicle), ApproachLimits::gentle(&vehicle), policy).unwrap()
+/// `controller`, supervised.
+pub fn supervise<L: Law<f32>>(controller: Controller<f32, L>, policy: Policy<f32>) -> Supervisor<f32, L> {
+    Supervisor::new(controller, EnvelopeParams::wide(), ApproachLimits::gentle(), policy).unwrap()
 }
 
 /// A command in f64.
@@ -65,18 +61,18 @@ pub fn deviation(position: &Vector3<f64>) -> f64 {
 }
 
 /// A flight: the plant under a supervised law, behind rotors of a first-order lag.
-pub struct Flight<P> {
-    pub supervisor: Supervisor<f32, P>,
+pub struct Flight<L> {
+    pub supervisor: Supervisor<f32, L>,
     pub body: Multibody,
     lag: f64,
     acting: Command<f64>,
     time: f64,
 }
 
-impl<P: Path<f32>> Flight<P> {
+impl<L: Law<f32>> Flight<L> {
     /// The plant in `state`, its payload `payload_mass` kg, under `applied`, N, without torque; the law takes over.
     pub fn new(
-        mut supervisor: Supervisor<f32, P>,
+        mut supervisor: Supervisor<f32, L>,
         state: &State<f64>,
         payload_mass: f64,
         applied: f64,
@@ -84,18 +80,18 @@ impl<P: Path<f32>> Flight<P> {
     ) -> Self {
         let vehicle = VehicleParameters { payload_mass, ..VehicleParameters::default() };
         let acting = Command { thrust: applied, torque: Vector3::zeros() };
-        supervisor.take_over(&state.cast(), Command { thrust: applied as f32, torque: Vector3::zeros() });
+        supervisor.take_over(&state.cast(), Command::of_thrust(applied as f32)).unwrap();
         Self { supervisor, body: Multibody::new(vehicle, state), lag, acting, time: 0.0 }
     }
 
     /// One control period. Every command is checked.
     pub fn step(&mut self, request: Request) -> Output<f32> {
         let sampled = self.body.state().cast();
-        self.step_seeing(&sampled, request)
+        self.step_seeing(Some(&sampled), request)
     }
 
     /// The same, with what the law sees.
-    pub fn step_seeing(&mut self, sampled: &State<f32>, request: Request) -> Output<f32> {
+    pub fn step_seeing(&mut self, sampled: Option<&State<f32>>, request: Request) -> Output<f32> {
         let output = self.supervisor.step(sampled, request);
         assert_bounded(&output);
         let command = exact(&output.command);

@@ -1,8 +1,10 @@
 //! The supervised law: its modes, its totality, and what it does at singularities and limits.
 
 mod flight;
+mod misuse;
 mod modes;
 mod saturation;
 mod singular;
 mod totality;
+mod tracking;
 mod trap;

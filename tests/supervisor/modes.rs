@@ -1,6 +1,6 @@
-//! Every edge of the transition table, as the documentation of `controller::flight::supervisor` has it.
+//! Every edge of the transition table, as the documentation of `controller::Supervisor` has it.
 
-use controller::{Fault, Margin, Mode, Path, Policy, Request, Sampling, State, Vector3};
+use controller::{Fault, Follow, Law, Margin, Mode, Path, Policy, Request, Sampling, State, Vector3};
 
 use crate::flight::{CIRCLE, Flight, PERIOD, supervisor};
 
@@ -8,7 +8,7 @@ const DOCUMENTATION: &str = include_str!("../../controller/src/flight/supervisor
 
 /// The table: its columns' names, and the rows' cells with the mode's name first.
 fn table() -> Vec<Vec<String>> {
-    let rows = DOCUMENTATION.lines().filter_map(|line| line.strip_prefix("//! |"));
+    let rows = DOCUMENTATION.lines().filter_map(|line| line.strip_prefix("/// |"));
     let rows = rows.filter(|row| !row.starts_with('-'));
     rows.map(|row| {
         row.trim_end_matches('|').split('|').map(|cell| cell.trim().trim_matches('`').to_owned()).collect()
@@ -21,13 +21,8 @@ fn mode(name: &str) -> Mode {
     all.into_iter().find(|mode| format!("{mode:?}") == name).unwrap()
 }
 
-/// No number in it.
-fn unknown() -> State<f32> {
-    State::at_rest(Vector3::repeat(f32::NAN))
-}
-
 /// A flight in `mode`, and the request that keeps it there.
-fn flight_in(mode: Mode) -> (Flight<impl Path<f32>>, Request) {
+fn flight_in(mode: Mode) -> (Flight<Follow<f32, impl Path<f32>>>, Request) {
     let law = supervisor(Sampling::every(PERIOD as f32), Policy::default());
     // A metre outside the circle.
     let start = State::at_rest(Vector3::new(CIRCLE[0] + 1.0, 0.0, CIRCLE[1]));
@@ -39,12 +34,12 @@ fn flight_in(mode: Mode) -> (Flight<impl Path<f32>>, Request) {
             Request::Idle
         }
         Mode::Join | Mode::Follow => Request::Follow,
-        Mode::Hold | Mode::Fault => Request::Hold,
         Mode::Land => Request::Land,
+        _ => Request::Hold,
     };
     if mode == Mode::Fault {
         while flight.supervisor.mode() != Mode::Fault {
-            flight.step_seeing(&unknown(), request);
+            flight.step_seeing(None, request);
         }
     } else {
         flight.until(mode, request, 30.0);
@@ -61,7 +56,7 @@ fn after(event: &str, from: Mode) -> Mode {
     }
     match event {
         "path reached" => {
-            while flight.supervisor.follower().approach().is_active() {
+            while flight.supervisor.law().approach().is_active() {
                 assert_eq!(flight.step(standing).mode, from);
             }
             flight.step(standing).mode
@@ -70,7 +65,7 @@ fn after(event: &str, from: Mode) -> Mode {
             let mut leaning: State<f32> = flight.body.state().cast();
             let (sin, cos) = 1.4_f32.sin_cos();
             leaning.rod = Vector3::new(sin, 0.0, cos);
-            let output = flight.step_seeing(&leaning, standing);
+            let output = flight.step_seeing(Some(&leaning), standing);
             let named = [Margin::RodAngle, Margin::ThrustAngle, Margin::Thrust, Margin::Tension].map(Fault::Margin);
             let by_law = matches!(from, Mode::Join | Mode::Follow);
             assert!(!by_law || output.fault.is_some_and(|fault| named.contains(&fault)), "{output:?}");
@@ -91,18 +86,18 @@ fn after(event: &str, from: Mode) -> Mode {
             // The ground carries it from here on: the state stays.
             let landed: State<f32> = flight.body.state().cast();
             let landed = State { velocity: Vector3::zeros(), rod_rate: Vector3::zeros(), ..landed };
-            let steps = (0..5000).map(|_| flight.supervisor.step(&landed, standing));
+            let steps = (0..5000).map(|_| flight.supervisor.step(Some(&landed), standing));
             steps.map(|output| output.mode).find(|mode| *mode != from).unwrap_or(from)
         }
         "no state" => {
-            let output = flight.step_seeing(&unknown(), standing);
-            assert!(matches!(output.fault, Some(Fault::State(_))));
+            let output = flight.step_seeing(None, standing);
+            assert_eq!(output.fault, Some(Fault::NoState));
             output.mode
         }
         "none for long" => {
             // Longer than the policy's tenth of a second.
             let steps = (0.11 / PERIOD) as usize;
-            (0..steps).map(|_| flight.step_seeing(&unknown(), standing).mode).last().unwrap()
+            (0..steps).map(|_| flight.step_seeing(None, standing).mode).last().unwrap()
         }
         other => panic!("no such event: {other}"),
     }
@@ -130,7 +125,7 @@ fn cut_rotors_stay_cut_until_off() {
     let start = State::at_rest(Vector3::new(0.0, 0.0, -10.0));
     let mut flight = Flight::new(supervisor(Sampling::every(PERIOD as f32), policy), &start, 0.5, 29.43, 0.0);
     flight.step(Request::Hold);
-    let blind = (0..60).map(|_| flight.step_seeing(&unknown(), Request::Hold)).last().unwrap();
+    let blind = (0..60).map(|_| flight.step_seeing(None, Request::Hold)).last().unwrap();
     assert_eq!((blind.mode, blind.command.thrust), (Mode::Fault, 0.0));
     for request in [Request::Hold, Request::Follow, Request::Land, Request::Idle] {
         let output = flight.step(request);
@@ -148,7 +143,7 @@ fn a_policy_that_does_not_resume_waits_for_a_new_request() {
     flight.until(Mode::Follow, Request::Follow, 30.0);
     let mut leaning: State<f32> = flight.body.state().cast();
     leaning.rod = Vector3::new(1.0, 0.0, 0.0);
-    assert_eq!(flight.step_seeing(&leaning, Request::Follow).mode, Mode::Hold);
+    assert_eq!(flight.step_seeing(Some(&leaning), Request::Follow).mode, Mode::Hold);
     assert!((0..5000).all(|_| flight.step(Request::Follow).mode == Mode::Hold));
     flight.step(Request::Hold);
     assert_eq!(flight.step(Request::Follow).mode, Mode::Join);

@@ -107,8 +107,8 @@ fn the_law_itself_hands_over_where_it_is_singular() {
         let mut law = supervisor(Sampling::every(PERIOD as f32), Policy::default());
         // ζ1 = g asks for free fall, ζ = 0 for hover.
         for zeta in [0.0, 9.81] {
-            law.start(&state.cast(), [zeta, 0.0, 0.0, 0.0]);
-            let output = law.step(&state.cast(), Request::Follow);
+            law.start(&state.cast(), [zeta, 0.0, 0.0, 0.0]).unwrap();
+            let output = law.step(Some(&state.cast()), Request::Follow);
             crate::flight::assert_bounded(&output);
             let is_regular = zeta == 0.0 && name == "free fall, T = 0";
             if is_regular {
@@ -124,11 +124,11 @@ fn the_law_itself_hands_over_where_it_is_singular() {
             // And what it saw there leaves no trace: the next good state is flown like a first one.
             let good: State<f32> = at_rest().cast();
             let mut fresh = supervisor(Sampling::every(PERIOD as f32), Policy::default());
-            let applied = controller::Command { thrust: HOVER as f32, torque: Vector3::zeros() };
-            law.take_over(&good, applied);
-            fresh.take_over(&good, applied);
+            let applied = controller::Command::of_thrust(HOVER as f32);
+            law.take_over(&good, applied).unwrap();
+            fresh.take_over(&good, applied).unwrap();
             for request in [Request::Hold, Request::Follow, Request::Follow] {
-                assert_eq!(law.step(&good, request), fresh.step(&good, request), "{name}");
+                assert_eq!(law.step(Some(&good), request), fresh.step(Some(&good), request), "{name}");
             }
         }
     }
@@ -138,8 +138,8 @@ fn the_law_itself_hands_over_where_it_is_singular() {
 fn margins_name_the_singularity() {
     let fault = |state: &State<f64>, zeta| {
         let mut law = supervisor(Sampling::every(PERIOD as f32), Policy::default());
-        law.start(&at_rest().cast(), [zeta, 0.0, 0.0, 0.0]);
-        law.step(&state.cast(), Request::Follow).fault
+        law.start(&at_rest().cast(), [zeta, 0.0, 0.0, 0.0]).unwrap();
+        law.step(Some(&state.cast()), Request::Follow).fault
     };
     let leaning = |angle: f64| State { rod: Vector3::new(angle.sin(), 0.0, angle.cos()), ..at_rest() };
     assert_eq!(fault(&leaning(1.3), 0.0), Some(Fault::Margin(Margin::RodAngle)));

@@ -1,7 +1,7 @@
 //! The scalar that stops at the first invalid operation, in flight.
 
 use controller::{
-    Circle, Command, Follower, Gains, Pole, Real, Sampling, State, Trapped, Vector3, Vehicle, VehicleParams, place,
+    Circle, Command, Curve, Follower, Gains, Real, Sampling, State, Trapped, Vector3, Vehicle, VehicleParams,
 };
 use hil_sim::describe::scenario;
 use hil_sim::fly::run::{Arithmetic, fly_simply};
@@ -17,18 +17,11 @@ fn a_flight_meets_no_invalid_operation_and_is_the_same_with_the_trap_set() {
 
 /// The law from `state`, three steps of it, without a supervisor.
 fn law<T: Real>(state: &State<f64>) -> [Command<f64>; 3] {
-    let circle = Circle::new(T::lit(5.0), T::lit(-10.0)).unwrap().at_speed(T::one());
-    let k = place(&[-1.0, -2.0, -3.0, -4.0, -5.0, -6.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap();
-    let gains = Gains {
-        k1: k,
-        k2: k,
-        k3: place(&[-1.0, -2.0, -3.0, -4.0, -5.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap(),
-        k4: place(&[-2.0, -3.0].map(|pole| Pole::Real(T::lit(pole)))).unwrap(),
-        integral: [T::zero(); 3],
-    };
+    let circle = Circle::new(T::lit(5.0), T::lit(-10.0)).unwrap().at_speed(T::one()).unwrap();
+    let gains = Gains::spread(T::one()).unwrap();
     let vehicle = Vehicle::new(VehicleParams::paper()).unwrap();
     let mut follower = Follower::new(vehicle, circle, gains, Sampling::every(T::lit(0.002))).unwrap();
-    follower.start(&state.cast(), [T::zero(); 4]);
+    follower.start(&state.cast(), [T::zero(); 4]).unwrap();
     core::array::from_fn(|_| {
         let Command { thrust, torque } = follower.step(&state.cast()).command;
         Command { thrust: thrust.to_f64(), torque: torque.map(Real::to_f64) }

@@ -18,11 +18,15 @@ use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
 use crate::path::{Outputs, Path};
+use crate::ranges::{
+    APPROACH_ACCELERATION, APPROACH_MAX_THRUST, APPROACH_MIN_THRUST, APPROACH_ROD_ANGLE, APPROACH_SPEED,
+    APPROACH_TILT,
+};
 
 /// max |S′|, |S″|, |S‴| and |S⁗| of the profile over x ∈ [0, 1].
 const PEAKS: [f64; 4] = [2.932_617_187_5, 13.176_705_784, 140.765_625, 1_341.111_326];
 
-/// The speed and the yaw need time even where the distance needs none, s.
+/// Shortest brake or slide, s: speed and yaw are blended in even where there is no distance to cover.
 const SHORTEST: f64 = 3.0;
 
 /// What an approach may ask of the vehicle, on top of the path itself.
@@ -32,46 +36,59 @@ pub struct ApproachLimits<T> {
     pub speed: T,
     /// Acceleration of the slide, m/s².
     pub acceleration: T,
-    /// Tilt of the thrust, rad, up to 1.2.
+    /// Tilt of the thrust, rad.
     pub tilt: T,
-    /// Angle of the rod from the vertical, rad, up to 1.2.
+    /// Angle of the rod from the vertical, rad.
     pub rod_angle: T,
-    /// Least total thrust, N, below the hover thrust.
+    /// Least total thrust, a share of the hover thrust, below 1.
     pub min_thrust: T,
-    /// Largest total thrust, N, above the hover thrust.
+    /// Largest total thrust, a share of the hover thrust, above 1.
     pub max_thrust: T,
 }
 
 impl<T: Real> ApproachLimits<T> {
     /// 3 m/s, 1.5 m/s², 20° of tilt and rod angle, thrust within ±30 % of hover.
-    pub fn gentle(vehicle: &Vehicle<T>) -> Self {
-        let hover = vehicle.hover_thrust();
+    #[must_use]
+    pub fn gentle() -> Self {
         Self {
-            speed: T::lit(3.0),
-            acceleration: T::lit(1.5),
-            tilt: T::lit(0.35),
-            rod_angle: T::lit(0.35),
-            min_thrust: hover * T::lit(0.7),
-            max_thrust: hover * T::lit(1.3),
+            speed: APPROACH_SPEED.default(),
+            acceleration: APPROACH_ACCELERATION.default(),
+            tilt: APPROACH_TILT.default(),
+            rod_angle: APPROACH_ROD_ANGLE.default(),
+            min_thrust: APPROACH_MIN_THRUST.default(),
+            max_thrust: APPROACH_MAX_THRUST.default(),
         }
     }
 
-    /// The limits as the payload's derivatives have them; an error names the limit that is out of range.
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    pub fn cast<U: Real>(&self) -> ApproachLimits<U> {
+        ApproachLimits {
+            speed: self.speed.cast(),
+            acceleration: self.acceleration.cast(),
+            tilt: self.tilt.cast(),
+            rod_angle: self.rod_angle.cast(),
+            min_thrust: self.min_thrust.cast(),
+            max_thrust: self.max_thrust.cast(),
+        }
+    }
+
+    /// The limits as the payload's derivatives have them.
     ///
     /// An acceleration a of the payload needs a rod angle of atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a:
     /// half of the tilt is for either.
+    ///
+    /// # Errors
+    /// The limit that is out of its [range](crate::ranges).
     pub fn pace(&self, vehicle: &Vehicle<T>) -> Result<Pace<T>, OutOfRange<T>> {
-        let hover = vehicle.hover_thrust();
-        OutOfRange::check("speed", self.speed, 0.01, 100.0)?;
-        OutOfRange::check("acceleration", self.acceleration, 0.01, 100.0)?;
-        OutOfRange::check("tilt", self.tilt, 0.01, 1.2)?;
-        OutOfRange::check("rod_angle", self.rod_angle, 0.01, 1.2)?;
-        OutOfRange::within("min_thrust", self.min_thrust, T::zero(), hover * T::lit(0.999))?;
-        OutOfRange::within("max_thrust", self.max_thrust, hover * T::lit(1.001), T::lit(1e6))?;
+        APPROACH_SPEED.check(self.speed)?;
+        APPROACH_ACCELERATION.check(self.acceleration)?;
+        APPROACH_TILT.check(self.tilt)?;
+        APPROACH_ROD_ANGLE.check(self.rod_angle)?;
+        APPROACH_MIN_THRUST.check(self.min_thrust)?;
+        APPROACH_MAX_THRUST.check(self.max_thrust)?;
 
         let params = vehicle.params();
         let gravity = params.gravity;
-        let per_mass = vehicle.per_total_mass();
         let leaning = |angle: T| {
             let (sin, cos) = angle.sin_cos();
             gravity * sin / (sin + cos)
@@ -81,9 +98,9 @@ impl<T: Real> ApproachLimits<T> {
             .acceleration
             .min(leaning(self.rod_angle))
             .min(tilting)
-            .min(self.max_thrust * per_mass - gravity)
-            .min(gravity - self.min_thrust * per_mass);
-        let swing = params.uav_mass * per_mass * params.rod_length / gravity;
+            .min((self.max_thrust - T::one()) * gravity)
+            .min((T::one() - self.min_thrust) * gravity);
+        let swing = params.uav_mass * vehicle.per_total_mass() * params.rod_length / gravity;
         let snap = tilting / swing;
         let [peak_1, peak_2, peak_3, peak_4] = PEAKS.map(T::lit);
         let squared = |x: T| x * x;
@@ -133,6 +150,7 @@ pub struct Approach<T> {
 
 impl<T: Real> Approach<T> {
     /// None: the path itself.
+    #[must_use]
     pub fn none() -> Self {
         let zero = T::zero();
         Self {
@@ -160,15 +178,21 @@ impl<T: Real> Approach<T> {
         let Some(Nearest { point, outputs, path_det }) = nearest(path, position) else {
             return false;
         };
-        self.elapsed = T::zero();
-        self.path_det = path_det;
-        self.speed = outputs.speed_error.value();
-        self.yaw = (outputs.yaw.value() - Yaw::of(state).angle).wrap_angle();
-        self.braking = duration(&pace.brake, velocity);
-        self.velocity = *velocity;
-        self.displacement = position - point + velocity * (self.braking * T::lit(0.5));
-        self.sliding = duration(&pace.slide, &self.displacement);
+        let yaw = (outputs.yaw.value() - Yaw::of(state).angle).wrap_angle();
+        *self = Self {
+            path_det,
+            speed: outputs.speed_error.value(),
+            ..Self::over(pace, position - point, *velocity, yaw)
+        };
         true
+    }
+
+    /// Begins `displacement` (m) away, moving at `velocity` (m/s) as seen from where it leads to, with `yaw` (rad) to turn.
+    pub(crate) fn over(pace: &Pace<T>, displacement: Vector3<T>, velocity: Vector3<T>, yaw: T) -> Self {
+        let braking = duration(&pace.brake, &velocity);
+        let displacement = displacement + velocity * (braking * T::lit(0.5));
+        let sliding = duration(&pace.slide, &displacement);
+        Self { displacement, velocity, yaw, braking, sliding, ..Self::none() }
     }
 
     #[inline]
@@ -226,7 +250,12 @@ impl<T: Real> Approach<T> {
     /// Brings speed and yaw to where they are while the displacement is.
     pub(crate) fn fade(&self, fading: &Fading<T>, outputs: &mut Outputs<T>) {
         outputs.speed_error.subtract(&fading.0, self.speed);
-        outputs.yaw.subtract(&fading.0, self.yaw);
+        self.fade_yaw(fading, &mut outputs.yaw);
+    }
+
+    /// Brings a yaw to where it is while the displacement is.
+    pub(crate) fn fade_yaw(&self, fading: &Fading<T>, yaw: &mut Series<T, 3>) {
+        yaw.subtract(&fading.0, self.yaw);
     }
 }
 
@@ -274,7 +303,7 @@ fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
     (Series(s), area)
 }
 
-/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: what of the coefficients before and before that makes S's k-th.
+/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: the weights of the two preceding coefficients in the k-th coefficient of S.
 const RECURRENCE: [[f64; 2]; 5] =
     [[3.0, 0.0], [5.0 / 3.0, 2.0], [1.0, 11.0 / 6.0], [3.0 / 5.0, 3.0 / 2.0], [1.0 / 3.0, 6.0 / 5.0]];
 
@@ -292,24 +321,28 @@ struct Nearest<T> {
     path_det: T,
 }
 
-/// A point of the path near `position`: Newton's search on h1 = h2 = 0, across the tangent, with at most 50 steps.
+/// Most steps of the search for a point of the path.
+const SEARCH_STEPS: usize = 50;
+/// A step longer than this, m, is cut: far from the curve its functions may be strongly curved.
+const LONGEST_STEP: f64 = 5.0;
+/// A point is on the curve when the last step was shorter than this, m: what f32 resolves at a hundred metres.
+const CLOSE: f64 = 1e-4;
+/// The step, m, along each axis where the functions are stationary, as at a circle's centre: any direction will do.
+const ANY_STEP: f64 = 0.1;
+
+/// A point of the path near `position`: Newton's search on h1 = h2 = 0, across the tangent.
 fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Option<Nearest<T>> {
-    const STEPS: usize = 50;
-    // A step longer than this is cut: far from the curve its functions may be strongly curved.
-    let longest = T::lit(5.0);
-    // On the curve to within what f32 resolves at a hundred metres.
-    let close = T::lit(1e-4);
+    let (longest, close) = (T::lit(LONGEST_STEP), T::lit(CLOSE));
     let mut at = at_rest(position);
-    for _ in 0..STEPS {
+    for _ in 0..SEARCH_STEPS {
         let outputs = path.outputs(&at);
         let [h1, h2] = &outputs.surfaces;
         let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);
         let squared = step.dot(&step);
-        // Where the functions are stationary, as at a circle's centre, any direction is as good as another.
         let step = if squared.is_finite() {
             step * (longest / squared.max(longest * longest).sqrt())
         } else {
-            Vector3::repeat(T::lit(0.1))
+            Vector3::repeat(T::lit(ANY_STEP))
         };
         for (coordinate, &step) in at.iter_mut().zip(&step) {
             *coordinate = *coordinate - step;
@@ -375,7 +408,7 @@ mod tests {
     #[test]
     fn durations_keep_speed_and_acceleration() {
         let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).unwrap();
-        let limits = ApproachLimits::gentle(&vehicle);
+        let limits = ApproachLimits::gentle();
         let pace = limits.pace(&vehicle).unwrap();
         let snap = largest_snap(&vehicle, &limits);
         for size in [0.1, 1.0, 20.0, 50.0] {

@@ -1,61 +1,12 @@
-//! The law's distances from where it is singular, and the envelope it is flown within.
+//! The envelope that the law is flown within: how near its singularities it may come.
 
 use model::{OutOfRange, Real, Vehicle};
 
-/// The numbers the law divides by, as signed distances from zero: the paper's singularities, the path's and the yaw's.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Margins<T> {
-    /// q·e3, cos α cos β: 1 hanging straight down, 0 with the rod horizontal.
-    pub q3: T,
-    /// q·b3: 1 with the thrust along the rod, 0 across it.
-    pub q_b3: T,
-    /// Payload's specific force along the rod, m/s²: −g hanging at rest, 0 in free fall (a slack cable).
-    pub lambda: T,
-    /// T/(m_Q L), 1/s²: 0 without thrust.
-    pub kappa: T,
-    /// (∇h1 × ∇h2)·ρ, in the units of h1 and h2 per m²; 1 for trajectory tracking. Negative where ρ is the opposite of (3).
-    pub path_det: T,
-    /// What is left of the reach of a path with a nearest point; 1 for the others.
-    pub reach: T,
-    /// cos²φ: 0 where yaw is not defined.
-    pub cos_phi_squared: T,
-}
-
-impl<T: Real> Margins<T> {
-    /// The same in another scalar, rounded to nearest. Host-side use.
-    #[must_use]
-    pub fn cast<U: Real>(&self) -> Margins<U> {
-        Margins {
-            q3: self.q3.cast(),
-            q_b3: self.q_b3.cast(),
-            lambda: self.lambda.cast(),
-            kappa: self.kappa.cast(),
-            path_det: self.path_det.cast(),
-            reach: self.reach.cast(),
-            cos_phi_squared: self.cos_phi_squared.cast(),
-        }
-    }
-}
-
-/// Which margin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Margin {
-    /// The rod's angle from the vertical (α, β → π/2).
-    RodAngle,
-    /// The angle between thrust axis and rod (b3 ⊥ q).
-    ThrustAngle,
-    /// The tension of the rod (free fall).
-    Tension,
-    /// The thrust (T → 0).
-    Thrust,
-    /// The regularity of the path's functions (∇h1 ∥ ∇h2, or one of them zero).
-    Path,
-    /// The reach of a path with a nearest point.
-    Reach,
-    /// The yaw's chart (φ → π/2).
-    Yaw,
-}
+use crate::law::margins::{Margin, Margins};
+use crate::ranges::{
+    BandRange, ENVELOPE_PATH, ENVELOPE_REACH, ENVELOPE_ROD_ANGLE, ENVELOPE_ROLL, ENVELOPE_TENSION, ENVELOPE_THRUST,
+    ENVELOPE_THRUST_ANGLE,
+};
 
 /// Where a margin begins to count, and where it ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,6 +15,12 @@ pub struct Band<T> {
     pub warning: T,
     /// Crossing it ends the law's flight.
     pub limit: T,
+}
+
+impl<T: Real> Band<T> {
+    fn default(range: &BandRange) -> Self {
+        Self { warning: range.warning.default(), limit: range.limit.default() }
+    }
 }
 
 /// The envelope in physical terms. Angles and their warnings below their limits, the others above.
@@ -75,31 +32,29 @@ pub struct EnvelopeParams<T> {
     pub thrust_angle: Band<T>,
     /// Roll φ of the yaw's chart, rad.
     pub roll: Band<T>,
-    /// Tension of the rod as the law knows the payload, N.
+    /// Tension of the rod, a share of the payload's weight.
     pub tension: Band<T>,
-    /// Thrust, N.
+    /// Thrust, a share of the hover thrust.
     pub thrust: Band<T>,
-    /// The determinant of the path's 3×3 system, as a share of its value on the path.
+    /// The determinant of the path's 3×3 system, a share of its value on the path.
     pub path: Band<T>,
-    /// What is left of the path's reach, as a share.
+    /// What is left of the path's reach, a share.
     pub reach: Band<T>,
 }
 
 impl<T: Real> EnvelopeParams<T> {
-    /// Angles to 70° (warning at 55°), tension and thrust down to a tenth of their values at hover (a quarter), path to a tenth, reach to a
-    /// twentieth (a fifth each).
-    pub fn wide(vehicle: &Vehicle<T>) -> Self {
-        let angle = Band { warning: T::lit(0.96), limit: T::lit(1.22) };
-        let share = |of: T| Band { warning: of * T::lit(0.25), limit: of * T::lit(0.1) };
-        let params = vehicle.params();
+    /// Angles to 70° (warning at 55°), tension and thrust down to a tenth of their values at hover (a quarter), path to a tenth,
+    /// reach to a twentieth (a fifth each).
+    #[must_use]
+    pub fn wide() -> Self {
         Self {
-            rod_angle: angle,
-            thrust_angle: angle,
-            roll: angle,
-            tension: share(params.payload_mass * params.gravity),
-            thrust: share(vehicle.hover_thrust()),
-            path: Band { warning: T::lit(0.2), limit: T::lit(0.1) },
-            reach: Band { warning: T::lit(0.2), limit: T::lit(0.05) },
+            rod_angle: Band::default(&ENVELOPE_ROD_ANGLE),
+            thrust_angle: Band::default(&ENVELOPE_THRUST_ANGLE),
+            roll: Band::default(&ENVELOPE_ROLL),
+            tension: Band::default(&ENVELOPE_TENSION),
+            thrust: Band::default(&ENVELOPE_THRUST),
+            path: Band::default(&ENVELOPE_PATH),
+            reach: Band::default(&ENVELOPE_REACH),
         }
     }
 }
@@ -115,18 +70,8 @@ pub enum Standing {
     Beyond(Margin),
 }
 
-/// The margins in the order of [`Margins`].
-const MARGINS: [Margin; 7] = [
-    Margin::RodAngle,
-    Margin::ThrustAngle,
-    Margin::Tension,
-    Margin::Thrust,
-    Margin::Path,
-    Margin::Reach,
-    Margin::Yaw,
-];
-
-/// What of the way from a margin's limit to its warning is left: `per_band` · value − `offset`, 1 at the warning and 0 at the limit.
+/// How much of the way from a margin's limit to its warning is left: `per_band` · value − `offset`, 1 at the warning and 0 at
+/// the limit.
 #[derive(Clone, Copy, Debug)]
 struct Threshold<T> {
     per_band: T,
@@ -139,62 +84,65 @@ impl<T: Real> Threshold<T> {
         let per_band = T::one() / (warning - limit).max(T::lit(1e-6));
         Self { per_band, offset: per_band * limit }
     }
+
+    /// An angle's, of which `margin` makes what stands in [`Margins`].
+    fn of_angle(band: &Band<T>, range: &BandRange, margin: impl Fn(T) -> T) -> Result<Self, OutOfRange<T>> {
+        range.limit.check(band.limit)?;
+        OutOfRange::within(range.warning.field, band.warning, T::lit(range.warning.min), band.limit)?;
+        Ok(Self::new(margin(band.warning), margin(band.limit)))
+    }
+
+    /// A share's, of which all is `unit`.
+    fn of_share(band: &Band<T>, range: &BandRange, unit: T) -> Result<Self, OutOfRange<T>> {
+        range.limit.check(band.limit)?;
+        OutOfRange::within(range.warning.field, band.warning, band.limit, T::lit(range.warning.max))?;
+        Ok(Self::new(band.warning * unit, band.limit * unit))
+    }
+}
+
+fn cosine<T: Real>(angle: T) -> T {
+    let (_, cosine) = angle.sin_cos();
+    cosine
 }
 
 /// An envelope whose parameters are in range.
 #[derive(Clone, Copy, Debug)]
 pub struct Envelope<T> {
+    /// In the order of [`Margin::ALL`].
     thresholds: [Threshold<T>; 7],
 }
 
 impl<T: Real> Envelope<T> {
-    /// Checks every parameter; an error names the first that is out of range.
+    /// Checks every parameter.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] names the first that is out of its [range](crate::ranges).
     pub fn new(vehicle: &Vehicle<T>, params: &EnvelopeParams<T>) -> Result<Self, OutOfRange<T>> {
-        let cosines = |field, band: &Band<T>| {
-            OutOfRange::check(field, band.limit, 0.05, 1.5)?;
-            OutOfRange::within(field, band.warning, T::zero(), band.limit)?;
-            let (_, warning) = band.warning.sin_cos();
-            let (_, limit) = band.limit.sin_cos();
-            Ok((warning, limit))
-        };
-        let least = |field, band: &Band<T>, largest: T, unit: T| {
-            OutOfRange::within(field, band.limit, T::zero(), largest)?;
-            OutOfRange::within(field, band.warning, band.limit, largest)?;
-            Ok(Threshold::new(band.warning * unit, band.limit * unit))
-        };
-        let one = T::one();
-        let payload = vehicle.params().payload_mass;
-        let weight = payload * vehicle.params().gravity;
-        let rod = cosines("rod_angle", &params.rod_angle)?;
-        let thrust = cosines("thrust_angle", &params.thrust_angle)?;
-        let roll = cosines("roll", &params.roll)?;
-        Ok(Self {
-            thresholds: [
-                Threshold::new(rod.0, rod.1),
-                Threshold::new(thrust.0, thrust.1),
-                least("tension", &params.tension, weight, one / payload)?,
-                least("thrust", &params.thrust, vehicle.hover_thrust(), vehicle.kappa_per_thrust())?,
-                least("path", &params.path, one, one)?,
-                least("reach", &params.reach, one, one)?,
-                Threshold::new(roll.0 * roll.0, roll.1 * roll.1),
-            ],
-        })
+        let hover_kappa = vehicle.hover_thrust() * vehicle.kappa_per_thrust();
+        let (one, gravity) = (T::one(), vehicle.params().gravity);
+        let squared = |angle| cosine(angle) * cosine(angle);
+        let mut thresholds = [Threshold::new(one, one); 7];
+        for (threshold, margin) in thresholds.iter_mut().zip(Margin::ALL) {
+            *threshold = match margin {
+                Margin::RodAngle => Threshold::of_angle(&params.rod_angle, &ENVELOPE_ROD_ANGLE, cosine),
+                Margin::ThrustAngle => Threshold::of_angle(&params.thrust_angle, &ENVELOPE_THRUST_ANGLE, cosine),
+                Margin::Tension => Threshold::of_share(&params.tension, &ENVELOPE_TENSION, gravity),
+                Margin::Thrust => Threshold::of_share(&params.thrust, &ENVELOPE_THRUST, hover_kappa),
+                Margin::Path => Threshold::of_share(&params.path, &ENVELOPE_PATH, one),
+                Margin::Reach => Threshold::of_share(&params.reach, &ENVELOPE_REACH, one),
+                Margin::Yaw => Threshold::of_angle(&params.roll, &ENVELOPE_ROLL, squared),
+            }?;
+        }
+        Ok(Self { thresholds })
     }
 
-    /// How `margins` stand by the least of them, with the determinant of the path's system as a share of `path_det`, its value on the path.
+    /// How `margins` stand by the least of them, with the determinant of the path's system as a share of `path_det`, its value
+    /// on the path.
     #[inline(never)]
     pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
-        let values = [
-            margins.q3,
-            margins.q_b3,
-            -margins.lambda,
-            margins.kappa,
-            margins.path_det / path_det,
-            margins.reach,
-            margins.cos_phi_squared,
-        ];
         let (mut least, mut margin) = (T::one(), Margin::RodAngle);
-        for ((value, threshold), of) in values.into_iter().zip(&self.thresholds).zip(MARGINS) {
+        let values = margins.values(path_det);
+        for ((value, threshold), of) in values.into_iter().zip(&self.thresholds).zip(Margin::ALL) {
             let share = value * threshold.per_band - threshold.offset;
             if share < least {
                 (least, margin) = (share, of);
@@ -207,5 +155,36 @@ impl<T: Real> Envelope<T> {
         } else {
             Standing::Beyond(margin)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use model::VehicleParams;
+
+    use super::*;
+
+    #[test]
+    fn each_margin_is_reported_by_its_own_name() {
+        let vehicle = Vehicle::new(VehicleParams::<f64>::paper()).unwrap();
+        let envelope = Envelope::new(&vehicle, &EnvelopeParams::wide()).unwrap();
+        let kappa = vehicle.hover_thrust() * vehicle.kappa_per_thrust();
+        let hover =
+            Margins { q3: 1.0, q_b3: 1.0, lambda: -9.81, kappa, path_det: 2.0, reach: 1.0, cos_phi_squared: 1.0 };
+        assert_eq!(envelope.assess(&hover, 2.0), Standing::Inside);
+        for (margin, singular) in [
+            (Margin::RodAngle, Margins { q3: 0.0, ..hover }),
+            (Margin::ThrustAngle, Margins { q_b3: 0.0, ..hover }),
+            (Margin::Tension, Margins { lambda: 0.0, ..hover }),
+            (Margin::Thrust, Margins { kappa: 0.0, ..hover }),
+            (Margin::Path, Margins { path_det: 0.0, ..hover }),
+            (Margin::Reach, Margins { reach: 0.0, ..hover }),
+            (Margin::Yaw, Margins { cos_phi_squared: 0.0, ..hover }),
+        ] {
+            assert_eq!(envelope.assess(&singular, 2.0), Standing::Beyond(margin));
+        }
+        // A fifth of the payload's weight: below a quarter, above a tenth.
+        let light = Margins { lambda: -0.2 * 9.81, ..hover };
+        assert_eq!(envelope.assess(&light, 2.0), Standing::Warning(Margin::Tension));
     }
 }

@@ -1,5 +1,5 @@
 //! What flying needs besides a law: joining the path, the envelope, modes and faults.
 
-pub mod approach;
-pub mod envelope;
-pub mod supervisor;
+pub(crate) mod approach;
+pub(crate) mod envelope;
+pub(crate) mod supervisor;

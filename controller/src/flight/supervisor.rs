@@ -1,52 +1,35 @@
 //! The law, supervised: modes, envelope, faults, and a command for every input.
-//!
-//! ```text
-//!          arm         hold, follow          follow, calm            path reached
-//!   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ JOIN ────────────────▶ FOLLOW
-//!    ▲                                ▲ ▲                     │                      │
-//!    │                                │ └─────────────────────┴──────────────────────┘
-//!    │                                │    hold asked for; a margin beyond its limit;
-//!    │        land, from any in flight│    an answer not finite; the payload lost
-//!    ├─ landed ── LAND ───────────────┤ hold or follow asked for
-//!    │                                │
-//!    │           FAULT ───────────────┘ a good state again, unless the rotors were cut
-//!    │             ▲ no good state for longer than [`Policy::coast`], from any in flight:
-//!    │             │ rotors cut, or sinking level, as [`Policy::lost`] says
-//!    └─ off, from anywhere
-//! ```
-//!
-//! What a request, the flight and the state's absence lead to, from each mode, at the next step. The tests read this table and try every field:
-//!
-//! | mode   | `Off` | `Idle` | `Follow` | `Hold` | `Land` | path reached | margin beyond | payload lost | landed | no state | none for long |
-//! |--------|-------|--------|----------|--------|--------|--------------|---------------|--------------|--------|----------|---------------|
-//! | Off    | Off   | Idle   | Idle     | Idle   | Off    |              |               |              |        | Off      | Off           |
-//! | Idle   | Off   | Idle   | Hold     | Hold   | Off    |              |               |              |        | Idle     | Idle          |
-//! | Join   | Off   | Hold   | Join     | Hold   | Land   | Follow       | Hold          | Hold         |        | Join     | Fault         |
-//! | Follow | Off   | Hold   | Follow   | Hold   | Land   |              | Hold          | Hold         |        | Follow   | Fault         |
-//! | Hold   | Off   | Hold   | Join     | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
-//! | Land   | Off   | Hold   | Hold     | Hold   | Land   |              | Land          |              | Off    | Land     | Fault         |
-//! | Fault  | Off   | Hold   | Hold     | Hold   | Hold   |              | Hold          |              |        | Fault    | Fault         |
-//!
-//! From hold the path is joined at once if follow has just been asked for and the vehicle is inside its envelope, and otherwise after
-//! [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
-//!
-//! Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
-//! next good state is flown on.
 
-use model::{Channel, Command, Disturbance, OutOfRange, Real, State, Yaw, dynamics::lambda, is_within};
+use model::{Channel, Command, Disturbance, OutOfRange, Real, State, is_within};
 
+use crate::error::Refused;
 use crate::flight::approach::{ApproachLimits, Pace};
-use crate::flight::envelope::{Envelope, EnvelopeParams, Margin, Margins, Standing};
-use crate::law::follow::{Follower, Solution, Xi};
+use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
 use crate::law::hold::Hold;
-use crate::path::Path;
+use crate::law::margins::{Margin, Margins};
+use crate::law::solution::Solution;
+use crate::law::{Ahead, Law};
+use crate::ranges::{CALM, COAST, DESCENT, PAYLOAD_LOST, SINK};
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
-use crate::sampled::sampler::Ahead;
+use crate::sampled::controller::Controller;
+use crate::sampled::sampler::Sampler;
 use nalgebra::Vector3;
+
+/// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as the rotors can, goes first.
+const JOINING_THRUST: f64 = 0.75;
+/// How long the payload must seem lost, s: longer than a swing's or a gust's unloading.
+const UNLOADED: f64 = 0.5;
+/// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any descent.
+const GROUNDED: f64 = 1.5;
+/// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
+const CALM_SPEED: f64 = 1.0;
+const CALM_SWING: f64 = 0.3;
+const CALM_TILT: f64 = 0.95;
 
 /// What the vehicle is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Mode {
     /// Rotors off.
     Off,
@@ -67,6 +50,7 @@ pub enum Mode {
 /// What the pilot wants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Request {
     /// Rotors off, at once.
     Off,
@@ -83,7 +67,10 @@ pub enum Request {
 /// Why the vehicle is not doing what was asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum Fault {
+    /// There was no state.
+    NoState,
     /// This part of the state is not a number, or out of any range.
     State(Channel),
     /// This margin is beyond its limit.
@@ -114,7 +101,7 @@ pub struct Policy<T> {
     pub lost: Lost<T>,
     /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the vehicle has been calm.
     pub resume: bool,
-    /// For how long it has to have been, s.
+    /// How long the vehicle must have been calm before it rejoins, s.
     pub calm: T,
     /// Speed of a landing, m/s.
     pub descent: T,
@@ -126,25 +113,25 @@ impl<T: Real> Default for Policy<T> {
     /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second; landing at 0.5 m/s; lost below 30 %.
     fn default() -> Self {
         Self {
-            coast: T::lit(0.1),
-            lost: Lost::Sink(T::lit(0.9)),
+            coast: COAST.default(),
+            lost: Lost::Sink(SINK.default()),
             resume: true,
-            calm: T::one(),
-            descent: T::lit(0.5),
-            payload_lost: T::lit(0.3),
+            calm: CALM.default(),
+            descent: DESCENT.default(),
+            payload_lost: PAYLOAD_LOST.default(),
         }
     }
 }
 
 impl<T: Real> Policy<T> {
     fn check(&self) -> Result<(), OutOfRange<T>> {
-        OutOfRange::check("coast", self.coast, 0.0, 10.0)?;
-        OutOfRange::check("calm", self.calm, 0.0, 100.0)?;
-        OutOfRange::check("descent", self.descent, 0.01, 10.0)?;
-        OutOfRange::check("payload_lost", self.payload_lost, -1.0, 0.95)?;
+        COAST.check(self.coast)?;
+        CALM.check(self.calm)?;
+        DESCENT.check(self.descent)?;
+        PAYLOAD_LOST.check(self.payload_lost)?;
         match self.lost {
             Lost::Cut => Ok(()),
-            Lost::Sink(share) => OutOfRange::check("lost", share, 0.0, 1.0),
+            Lost::Sink(share) => SINK.check(share),
         }
     }
 }
@@ -162,10 +149,44 @@ pub struct Output<T> {
     pub warning: Option<Margin>,
 }
 
-/// A path-following controller that answers every input.
+/// A law, supervised: it answers every input. It owns the sampled memory and lends it to the law, or to hold.
+///
+/// ```text
+///          arm         hold, follow          follow, calm            path reached
+///   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ JOIN ────────────────▶ FOLLOW
+///    ▲                                ▲ ▲                     │                      │
+///    │                                │ └─────────────────────┴──────────────────────┘
+///    │                                │    hold asked for; a margin beyond its limit;
+///    │        land, from any in flight│    an answer not finite; the payload lost
+///    ├─ landed ── LAND ───────────────┤ hold or follow asked for
+///    │                                │
+///    │           FAULT ───────────────┘ a good state again, unless the rotors were cut
+///    │             ▲ no good state for longer than [`Policy::coast`], from any in flight:
+///    │             │ rotors cut, or sinking level, as [`Policy::lost`] says
+///    └─ off, from anywhere
+/// ```
+///
+/// What a request, the flight and the state's absence lead to, from each mode, at the next step. The tests read this table and try every field:
+///
+/// | mode   | `Off` | `Idle` | `Follow` | `Hold` | `Land` | path reached | margin beyond | payload lost | landed | no state | none for long |
+/// |--------|-------|--------|----------|--------|--------|--------------|---------------|--------------|--------|----------|---------------|
+/// | Off    | Off   | Idle   | Idle     | Idle   | Off    |              |               |              |        | Off      | Off           |
+/// | Idle   | Off   | Idle   | Hold     | Hold   | Off    |              |               |              |        | Idle     | Idle          |
+/// | Join   | Off   | Hold   | Join     | Hold   | Land   | Follow       | Hold          | Hold         |        | Join     | Fault         |
+/// | Follow | Off   | Hold   | Follow   | Hold   | Land   |              | Hold          | Hold         |        | Follow   | Fault         |
+/// | Hold   | Off   | Hold   | Join     | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
+/// | Land   | Off   | Hold   | Hold     | Hold   | Land   |              | Land          |              | Off    | Land     | Fault         |
+/// | Fault  | Off   | Hold   | Hold     | Hold   | Hold   |              | Hold          |              |        | Fault    | Fault         |
+///
+/// From hold the path is joined at once if follow has just been asked for and the vehicle is inside its envelope, and otherwise after
+/// [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
+///
+/// Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
+/// next good state is flown on.
 #[derive(Clone, Debug)]
-pub struct Supervisor<T, P, A = ActuatorLimits<T>> {
-    follower: Follower<T, P, A>,
+pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
+    sampler: Sampler<T, A>,
+    law: L,
     envelope: Envelope<T>,
     pace: Pace<T>,
     policy: Policy<T>,
@@ -183,22 +204,27 @@ pub struct Supervisor<T, P, A = ActuatorLimits<T>> {
     unloaded: T,
 }
 
-impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
-    /// Rotors off. An error names the parameter that is out of range.
+impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
+    /// Supervises `controller`, rotors off.
+    ///
+    /// # Errors
+    /// The parameter that is out of its [range](crate::ranges).
     pub fn new(
-        follower: Follower<T, P, A>,
-        envelope: &EnvelopeParams<T>,
+        controller: Controller<T, L, A>,
+        envelope: EnvelopeParams<T>,
         approach: ApproachLimits<T>,
         policy: Policy<T>,
     ) -> Result<Self, OutOfRange<T>> {
-        let vehicle = *follower.vehicle();
+        let (law, sampler) = controller.into_parts();
+        let vehicle = *sampler.vehicle();
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
         let params = vehicle.params();
         let least_mass = (params.uav_mass + params.payload_mass * policy.payload_lost) / vehicle.total_mass();
         Ok(Self {
-            follower,
-            envelope: Envelope::new(&vehicle, envelope)?,
+            sampler,
+            law,
+            envelope: Envelope::new(&vehicle, &envelope)?,
             pace,
             policy,
             least_mass,
@@ -218,46 +244,69 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
         self.mode
     }
 
-    /// The law's own answer in the last step, where it was flown: what [`Output::command`] was before the limits, and what it came from.
-    pub fn solution(&self) -> Option<&Solution<T, Xi<T>>> {
-        self.is_by_law.then(|| self.follower.solution())
+    /// The law's solution of the last step, if the law flew it: the command before limits, and the numbers behind it.
+    pub fn solution(&self) -> Option<&Solution<T, L::Xi>> {
+        self.is_by_law.then(|| self.law.solution())
     }
 
     /// The law that is supervised.
-    pub fn follower(&self) -> &Follower<T, P, A> {
-        &self.follower
+    pub fn law(&self) -> &L {
+        &self.law
+    }
+
+    /// The law, for what may be changed of it in flight: a reference, a path's own settings.
+    pub fn law_mut(&mut self) -> &mut L {
+        &mut self.law
+    }
+
+    /// The sampled memory.
+    pub fn sampler(&self) -> &Sampler<T, A> {
+        &self.sampler
+    }
+
+    /// The disturbances found up to the last sample.
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        self.sampler.disturbance()
     }
 
     /// Takes over a flying vehicle, to which `applied` has been applied until now: from [`Mode::Off`] to [`Mode::Hold`].
-    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
-        if state.check().is_ok() && applied.is_finite() {
-            let sampler = self.follower.sampler();
-            let applied = sampler.actuation().apply(&applied);
-            sampler.take_over(state, applied);
-            self.request = Request::Hold;
-            self.fault = None;
-            self.enter_hold(state, None);
-        }
+    ///
+    /// # Errors
+    /// A part of `state` or of `applied` is no number or out of any range; nothing has changed.
+    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
+        let applied = if applied.is_finite() { self.sampler.actuation().apply(&applied) } else { applied };
+        self.sampler.take_over(state, applied)?;
+        self.request = Request::Hold;
+        self.fault = None;
+        self.enter_hold(state, None);
+        Ok(())
     }
 
-    /// Starts on the path, from a stated ζ: [`Mode::Follow`] without an approach. Of numbers that are none, nothing is started.
-    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        if state.check().is_ok() && zeta.iter().all(|z| z.is_finite()) {
-            self.follower.start(state, zeta);
-            self.request = Request::Follow;
-            self.fault = None;
-            self.mode = Mode::Follow;
-        }
+    /// Starts on the path, from a stated ζ: [`Mode::Follow`] without an approach.
+    ///
+    /// # Errors
+    /// A part of `state` or of `zeta` is no number or out of any range; nothing has changed.
+    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
+        self.sampler.start(state, zeta)?;
+        self.law.restart(state);
+        self.request = Request::Follow;
+        self.fault = None;
+        self.mode = Mode::Follow;
+        Ok(())
     }
 
-    /// Changes what the actuators can apply, in flight too.
+    /// Changes what the actuators can apply, in flight too: less than hover's thrust may then be the truth.
+    ///
+    /// # Errors
+    /// A parameter of `actuation` is out of range; nothing has changed.
     pub fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
-        self.follower.set_actuation(actuation)
+        self.sampler.set_actuation(actuation)
     }
 
-    /// The command for the coming hold. Call once every period, with the state sampled now and what the pilot wants.
+    /// The command for the coming hold. Call once every period, with the state sampled now, if there is one, and what the pilot
+    /// wants.
     #[inline]
-    pub fn step(&mut self, sampled: &State<T>, request: Request) -> Output<T> {
+    pub fn step(&mut self, sampled: Option<&State<T>>, request: Request) -> Output<T> {
         if request != self.request {
             self.request = request;
             self.fault = None;
@@ -267,31 +316,30 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             self.mode = Mode::Off;
         }
         self.is_by_law = false;
-        match sampled.check() {
-            Err(channel) => {
-                let command = self.without_state(channel);
-                self.output(command, None)
-            }
-            Ok(()) => {
-                if self.blind > T::zero() {
-                    self.blind = T::zero();
-                    self.follower.sampler().resume(sampled);
-                }
-                self.change_mode(sampled);
-                match self.mode {
-                    // In fault with a good state: the rotors were cut.
-                    Mode::Off | Mode::Fault => self.ground(sampled, T::zero()),
-                    Mode::Idle => self.ground(sampled, self.follower.actuation().least_thrust()),
-                    Mode::Join | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
-                }
-            }
+        let sampled = match sampled {
+            None => return self.without_state(Fault::NoState),
+            Some(sampled) => match sampled.check() {
+                Err(channel) => return self.without_state(Fault::State(channel)),
+                Ok(()) => sampled,
+            },
+        };
+        if self.blind > T::zero() {
+            self.blind = T::zero();
+            self.sampler.resume(sampled);
+        }
+        self.change_mode(sampled);
+        match self.mode {
+            // In fault with a good state: the rotors were cut.
+            Mode::Off | Mode::Fault => self.ground(sampled, T::zero()),
+            Mode::Idle => self.ground(sampled, self.sampler.actuation().least_thrust()),
+            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
         }
     }
 
     /// By the law, or by hold.
     #[inline]
     fn fly(&mut self, sampled: &State<T>) -> Output<T> {
-        let ahead = self.follower.sampler().sample(sampled);
+        let ahead = self.sampler.sample(sampled);
         if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.follow(sampled, &ahead)
         } else {
@@ -307,8 +355,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// On the ground: no law, no torque.
     #[cold]
     fn ground(&mut self, sampled: &State<T>, thrust: T) -> Output<T> {
-        let command = Command { thrust, torque: Vector3::zeros() };
-        self.follower.sampler().take_over(sampled, command);
+        let command = Command::of_thrust(thrust);
+        self.sampler.stand(sampled, command);
         self.output(command, None)
     }
 
@@ -321,7 +369,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             (Mode::Idle, Request::Land) => Mode::Off,
             (Mode::Idle, _) => Mode::Hold,
             (Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
-            (Mode::Join, Request::Follow) if self.follower.approach().is_active() => Mode::Join,
+            (Mode::Join, Request::Follow) if self.law.approach().is_active() => Mode::Join,
             (Mode::Join | Mode::Follow, Request::Follow) => Mode::Follow,
             (Mode::Hold, Request::Follow) if self.may_follow() => Mode::Join,
             (Mode::Fault, _) if self.policy.lost == Lost::Cut => Mode::Fault,
@@ -343,32 +391,23 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// Joins the path, if the vehicle is where the law can fly it.
     #[cold]
     fn join(&mut self, sampled: &State<T>) {
-        let least = self.follower.vehicle().hover_thrust() * T::lit(ENGAGING_THRUST);
-        let falling = self.follower.sampler().applied().thrust < least;
-        if !falling && self.standing(sampled) == Standing::Inside {
-            if self.follower.rejoin(sampled, &self.pace) {
+        let falling = self.sampler.applied().thrust < self.sampler.vehicle().hover_thrust() * T::lit(JOINING_THRUST);
+        if falling || self.standing(sampled) != Standing::Inside {
+            return;
+        }
+        match self.law.join(sampled, &self.pace) {
+            Ok(()) => {
+                self.sampler.carry_on(sampled);
                 self.mode = Mode::Join;
-            } else {
-                self.enter_hold(sampled, Some(Fault::NoPath));
             }
+            Err(_) => self.enter_hold(sampled, Some(Fault::NoPath)),
         }
     }
 
     /// How the vehicle stands in the envelope under what is being applied; the path's margins are the law's to say.
     #[inline(never)]
-    fn standing(&mut self, sampled: &State<T>) -> Standing {
-        let thrust = self.follower.sampler().applied().thrust;
-        let vehicle = self.follower.vehicle();
-        let b3: Vector3<T> = sampled.attitude.column(2).into();
-        let margins = Margins {
-            q3: sampled.rod.z,
-            q_b3: b3.dot(&sampled.rod),
-            lambda: lambda(vehicle, sampled, thrust),
-            kappa: thrust * vehicle.kappa_per_thrust(),
-            path_det: T::one(),
-            reach: T::one(),
-            cos_phi_squared: Yaw::of(sampled).cos_phi_squared,
-        };
+    fn standing(&self, sampled: &State<T>) -> Standing {
+        let margins = Margins::of_motion(self.sampler.vehicle(), sampled, self.sampler.applied().thrust);
         self.envelope.assess(&margins, T::one())
     }
 
@@ -380,8 +419,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
 
     #[cold]
     fn enter_hold(&mut self, sampled: &State<T>, fault: Option<Fault>) {
-        self.hold = Hold::from(self.follower.vehicle(), sampled);
-        self.follower.sampler().soften();
+        self.hold = Hold::from(self.sampler.vehicle(), sampled);
+        self.sampler.soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
         self.unloaded = T::zero();
@@ -392,9 +431,9 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     // Apart, and so is hold: neither needs the other's stack.
     #[inline(never)]
     fn follow(&mut self, sampled: &State<T>, ahead: &Ahead<T>) -> Output<T> {
-        self.follower.evaluate(ahead);
-        let solution = self.follower.solution();
-        let standing = self.envelope.assess(&solution.margins, self.follower.approach().path_det());
+        self.sampler.ask(&mut self.law, ahead);
+        let solution = self.law.solution();
+        let standing = self.envelope.assess(&solution.margins, self.law.approach().path_det());
         let fault = if let Standing::Beyond(margin) = standing {
             Some(Fault::Margin(margin))
         } else if !solution.is_finite() {
@@ -408,7 +447,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             self.enter_hold(sampled, fault);
             return self.hold(sampled, &ahead.state);
         }
-        let command = self.follower.accept();
+        let command = self.sampler.accept(&mut self.law);
         self.is_by_law = true;
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
         self.output(command, warning)
@@ -417,8 +456,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
     /// Hold's command for when it acts, at `state`, from what is `sampled` now.
     #[cold]
     fn hold(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
-        let period = self.follower.sampler().period();
-        let (vehicle, disturbance) = (self.follower.vehicle(), self.follower.disturbance());
+        let period = self.sampler.period();
+        let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
         let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
         let wanted = self.hold.step(vehicle, state, disturbance, descent, period);
         if self.mode == Mode::Land && self.hold.left_above(vehicle, sampled) > T::lit(GROUNDED) {
@@ -434,55 +473,42 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Supervisor<T, P, A> {
             Standing::Inside => None,
             Standing::Warning(margin) | Standing::Beyond(margin) => Some(margin),
         };
-        let command = self.follower.sampler().commit(wanted, T::zero(), T::zero());
+        let command = self.sampler.commit(wanted, T::zero(), T::zero());
         self.output(command, warning)
     }
 
-    /// The command of a step without a good state.
+    /// A step without a good state.
     #[cold]
-    fn without_state(&mut self, channel: Channel) -> Command<T> {
-        self.fault = Some(Fault::State(channel));
-        let hover = self.follower.vehicle().hover_thrust();
-        let sampler = self.follower.sampler();
-        self.blind += sampler.period();
-        let level = |thrust| Command { thrust, torque: Vector3::zeros() };
-        match self.mode {
+    fn without_state(&mut self, fault: Fault) -> Output<T> {
+        self.fault = Some(fault);
+        self.blind += self.sampler.period();
+        let command = match self.mode {
             Mode::Off => Command::zero(),
-            Mode::Idle => level(sampler.actuation().least_thrust()),
-            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => sampler.coast(),
+            Mode::Idle => Command::of_thrust(self.sampler.actuation().least_thrust()),
+            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => {
+                self.sampler.coast()
+            }
             _ => {
                 self.mode = Mode::Fault;
                 match self.policy.lost {
                     Lost::Cut => Command::zero(),
-                    Lost::Sink(share) => sampler.send(&level(hover * share)),
+                    Lost::Sink(share) => {
+                        let hover = self.sampler.vehicle().hover_thrust();
+                        self.sampler.send(&Command::of_thrust(hover * share))
+                    }
                 }
             }
-        }
+        };
+        self.output(command, None)
     }
 
     /// Whether the payload's mass has been implied to be next to nothing for a while: M = M₀ λ/(λ + d·q), both sides negative.
     #[inline]
     fn payload_is_lost(&mut self, ahead: &Ahead<T>) -> bool {
-        let lambda = self.follower.solution().margins.lambda;
-        let along = self.follower.disturbance().payload.dot(&ahead.state.rod);
+        let lambda = self.law.solution().margins.lambda;
+        let along = self.sampler.disturbance().payload.dot(&ahead.state.rod);
         let lost = lambda > self.least_mass * (lambda + along);
-        self.unloaded = if lost { self.unloaded + self.follower.sampler().period() } else { T::zero() };
+        self.unloaded = if lost { self.unloaded + self.sampler.period() } else { T::zero() };
         self.unloaded > T::lit(UNLOADED)
     }
-
-    /// What is known of disturbances.
-    pub fn disturbance(&self) -> &Disturbance<T> {
-        self.follower.disturbance()
-    }
 }
-
-/// Below this share of the hover thrust the vehicle falls, which hold ends sooner than the law.
-const ENGAGING_THRUST: f64 = 0.75;
-/// How long the payload has to seem lost, s.
-const UNLOADED: f64 = 0.5;
-/// How far above its target the ground must keep a landing vehicle, m.
-const GROUNDED: f64 = 1.5;
-/// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt.
-const CALM_SPEED: f64 = 1.0;
-const CALM_SWING: f64 = 0.3;
-const CALM_TILT: f64 = 0.95;

@@ -7,9 +7,11 @@
 // The Routh table and polynomial products index over compile-time bounds.
 #![allow(clippy::indexing_slicing)]
 
-use model::Real;
-
 use core::fmt;
+
+use model::{OutOfRange, Real};
+
+use crate::ranges::POLE;
 
 /// One real pole or one complex-conjugate pair, 1/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,6 +42,13 @@ pub enum GainError<T> {
         /// Its real part, 1/s; must be < 0.
         re: T,
     },
+    /// A pole is too far from zero for its gains to be numbers.
+    PoleTooFast {
+        /// The larger of its real and imaginary parts' sizes, 1/s.
+        size: T,
+        /// The largest allowed, 1/s.
+        limit: T,
+    },
     /// The characteristic polynomial of an output is not Hurwitz.
     NotHurwitz {
         /// The output, 1 to 4.
@@ -63,6 +72,7 @@ impl<T: Real> GainError<T> {
         match *self {
             Self::PoleCount { expected, given } => GainError::PoleCount { expected, given },
             Self::UnstablePole { re } => GainError::UnstablePole { re: re.cast() },
+            Self::PoleTooFast { size, limit } => GainError::PoleTooFast { size: size.cast(), limit: limit.cast() },
             Self::NotHurwitz { output } => GainError::NotHurwitz { output },
             Self::Integral { output, value, limit } => {
                 GainError::Integral { output, value: value.cast(), limit: limit.cast() }
@@ -78,6 +88,7 @@ impl<T: Real> fmt::Display for GainError<T> {
                 write!(f, "{given} poles where the relative degree needs {expected}")
             }
             Self::UnstablePole { re } => write!(f, "a pole with real part {re} is not in the open left half-plane"),
+            Self::PoleTooFast { size, limit } => write!(f, "a pole of size {size} is beyond {limit}"),
             Self::NotHurwitz { output } => write!(f, "the gains of output {output} do not make a stable loop"),
             Self::Integral { output, value, limit } => write!(
                 f,
@@ -90,7 +101,34 @@ impl<T: Real> fmt::Display for GainError<T> {
 
 impl<T: Real> core::error::Error for GainError<T> {}
 
+/// The gains that put real poles at −first, −(first + 1), … times `bandwidth` on a chain of R integrators.
+pub(crate) fn spread<T: Real, const R: usize>(bandwidth: T, first: u8) -> [T; R] {
+    let mut k = [T::zero(); R];
+    for (degree, pole) in (first..).take(R).enumerate() {
+        multiply(&mut k, degree, &[T::lit(f64::from(pole)) * bandwidth]);
+    }
+    k
+}
+
+/// Multiplies a monic polynomial of `degree`, its coefficients below the leading one in `k`, low order first, by the monic one
+/// whose coefficients below the leading one are `factor`.
+fn multiply<T: Real, const R: usize, const N: usize>(k: &mut [T; R], degree: usize, factor: &[T; N]) {
+    let old = *k;
+    for (j, k) in k.iter_mut().enumerate().take(degree + N) {
+        let at = |shift: usize| match j.checked_sub(shift) {
+            Some(i) if i == degree => T::one(),
+            Some(i) => old.get(i).copied().unwrap_or_else(T::zero),
+            None => T::zero(),
+        };
+        *k = factor.iter().enumerate().rev().fold(at(N), |sum, (shift, &c)| sum + c * at(shift));
+    }
+}
+
 /// The gains k₀ … k_{R−1}, low order first, that place `poles` on a chain of R integrators.
+///
+/// # Errors
+/// The poles are not R, or one of them is not in the open left half-plane, or further from zero than
+/// [its range](crate::ranges::POLE).
 pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainError<T>> {
     let given = poles.iter().map(|pole| if matches!(pole, Pole::Real(_)) { 1 } else { 2 }).sum();
     if given != R {
@@ -100,24 +138,25 @@ pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainE
     let mut k = [T::zero(); R];
     let mut degree = 0;
     for pole in poles {
-        let (re, order, b, c) = match *pole {
-            Pole::Real(re) => (re, 1, -re, T::zero()),
-            Pole::Pair { re, im } => (re, 2, -(re + re), re * re + im * im),
+        let (re, im) = match *pole {
+            Pole::Real(re) => (re, T::zero()),
+            Pole::Pair { re, im } => (re, im),
         };
-        if re >= T::zero() || !re.is_finite() || !c.is_finite() {
+        if re >= T::zero() || !re.is_finite() || !im.is_finite() {
             return Err(GainError::UnstablePole { re });
         }
-        // Multiply by s + b, or by s² + b s + c.
-        let old = k;
-        for (j, k) in k.iter_mut().enumerate().take(degree + order) {
-            let at = |shift| match j.checked_sub(shift) {
-                Some(i) if i == degree => T::one(),
-                Some(i) => old.get(i).copied().unwrap_or_else(T::zero),
-                None => T::zero(),
-            };
-            *k = if order == 1 { at(1) + b * at(0) } else { at(2) + b * at(1) + c * at(0) };
+        let size = re.abs().max(im.abs());
+        POLE.check(size).map_err(|OutOfRange { max, .. }| GainError::PoleTooFast { size, limit: max })?;
+        match pole {
+            Pole::Real(_) => {
+                multiply(&mut k, degree, &[-re]);
+                degree += 1;
+            }
+            Pole::Pair { .. } => {
+                multiply(&mut k, degree, &[re * re + im * im, -(re + re)]);
+                degree += 2;
+            }
         }
-        degree += order;
     }
     Ok(k)
 }
@@ -203,9 +242,18 @@ mod tests {
     }
 
     #[test]
+    fn spread_gains_are_those_of_their_poles() {
+        let poles = [-2.0, -4.0, -6.0, -8.0, -10.0, -12.0].map(Pole::Real);
+        assert_eq!(place(&poles), Ok(spread::<f64, 6>(2.0, 1)));
+        assert_eq!(place(&[-3.0, -4.5].map(Pole::Real)), Ok(spread::<f64, 2>(1.5, 2)));
+    }
+
+    #[test]
     fn bad_poles_are_refused() {
         let count: Result<[f64; 3], _> = place(&[Pole::Real(-1.0)]);
         assert_eq!(count, Err(GainError::PoleCount { expected: 3, given: 1 }));
+        let fast: Result<[f32; 6], _> = place(&[Pole::Real(-1e20); 6]);
+        assert!(matches!(fast, Err(GainError::PoleTooFast { .. })), "{fast:?}");
         for re in [0.0, 1.0, f64::NAN] {
             let unstable: Result<[f64; 1], _> = place(&[Pole::Real(re)]);
             assert!(matches!(unstable, Err(GainError::UnstablePole { .. })), "{re}");

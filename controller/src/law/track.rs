@@ -2,17 +2,18 @@
 //!
 //! The same lift and lower with p⁽⁶⁾ = p_ref⁽⁶⁾ − Σ kⱼ (p − p_ref)⁽ʲ⁾. Relative degrees are {6, 6, 6, 2}.
 
-use model::{Command, Disturbance, Real, Series, State, Vehicle, Yaw};
+use model::{Command, Disturbance, OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;
 
-use crate::flight::envelope::Margins;
-use crate::law::follow::{SetupError, Solution, dot};
+use crate::error::Refused;
+use crate::flight::approach::{Approach, Pace};
 use crate::law::gains::{self, GainError};
-use crate::law::lift::{PositionSeries, lift};
+use crate::law::lift::{Lift, PositionSeries, lift};
 use crate::law::lower::lower;
-use crate::sampled::actuator::ActuatorLimits;
-use crate::sampled::observer::ObserverParams;
-use crate::sampled::sampler::{Ahead, Sampler, Sampling};
+use crate::law::margins::Margins;
+use crate::law::solution::{Solution, dot};
+use crate::law::{Ahead, Law};
+use crate::ranges::BANDWIDTH;
 
 /// Gains of the tracking law, low order first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,19 @@ impl<T: Real> TrackGains<T> {
         TrackGains { position: self.position.map(|row| row.map(T::cast)), yaw: self.yaw.map(T::cast) }
     }
 
+    /// Spread poles to fly with: −1 to −6 times `bandwidth` (1/s), and −2, −3 times it for the yaw.
+    ///
+    /// # Errors
+    /// `bandwidth` is out of its [range](crate::ranges::BANDWIDTH).
+    pub fn spread(bandwidth: T) -> Result<Self, OutOfRange<T>> {
+        BANDWIDTH.check(bandwidth)?;
+        Ok(Self { position: [gains::spread(bandwidth, 1); 3], yaw: gains::spread(bandwidth, 2) })
+    }
+
     /// `Ok` if every closed loop is stable.
+    ///
+    /// # Errors
+    /// The first output whose loop is not.
     pub fn check(&self) -> Result<(), GainError<T>> {
         for (output, k) in (1..).zip(&self.position) {
             gains::check::<_, 6, 7>(output, k, T::zero())?;
@@ -72,7 +85,7 @@ impl<T: Real> Reference<T> {
 }
 
 /// The tracked outputs and their derivatives; the reference is not subtracted.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TrackXi<T> {
     /// p to p⁽⁵⁾ in N, a row for each of p1, p2, p3; m/sᵏ.
     pub position: [[T; 6]; 3],
@@ -80,9 +93,8 @@ pub struct TrackXi<T> {
     pub yaw: [T; 2],
 }
 
-/// Evaluates the tracking law at `state`, ζ and a known disturbance as they are.
-#[inline(always)]
-pub fn law<T: Real>(
+/// The tracking law at `state`, ζ and a known disturbance as they are.
+pub fn track<T: Real>(
     vehicle: &Vehicle<T>,
     gains: &TrackGains<T>,
     reference: &Reference<T>,
@@ -90,7 +102,19 @@ pub fn law<T: Real>(
     zeta: &[T; 4],
     disturbance: &Disturbance<T>,
 ) -> Solution<T, TrackXi<T>> {
-    let lift = lift(vehicle, state, zeta, disturbance);
+    answer(vehicle, gains, reference, state, &lift(vehicle, state, zeta, disturbance), disturbance)
+}
+
+/// The law's answer to what was lifted.
+#[inline(always)]
+fn answer<T: Real>(
+    vehicle: &Vehicle<T>,
+    gains: &TrackGains<T>,
+    reference: &Reference<T>,
+    state: &State<T>,
+    lift: &Lift<T>,
+    disturbance: &Disturbance<T>,
+) -> Solution<T, TrackXi<T>> {
     let yaw = Yaw::of(state);
 
     let [x, y, z] = &reference.position;
@@ -107,7 +131,7 @@ pub fn law<T: Real>(
     Solution {
         command: Command {
             thrust: lift.thrust(vehicle),
-            torque: lower(vehicle, state, &lift, &yaw, &position_6, yaw_2, &disturbance.torque),
+            torque: lower(vehicle, state, lift, &yaw, &position_6, yaw_2, &disturbance.torque),
         },
         u_zeta: position_6.z,
         xi: TrackXi { position: [p1, p2, p3].map(derivatives), yaw: [yaw.angle, yaw.rate] },
@@ -130,66 +154,74 @@ fn derivatives<T: Real>(p: &Series<T, 7>) -> [T; 6] {
     core::array::from_fn(|k| p.derivative(k))
 }
 
-/// The trajectory-tracking controller: the law at a fixed rate.
+/// The tracking law with its memory.
 #[derive(Clone, Debug)]
-pub struct Tracker<T> {
+pub struct Track<T> {
     gains: TrackGains<T>,
-    sampler: Sampler<T>,
+    reference: Reference<T>,
+    solution: Solution<T, TrackXi<T>>,
+    approach: Approach<T>,
 }
 
-impl<T: Real> Tracker<T> {
-    /// A controller at hover (ζ = 0), with gains that have been found stable; without limits or observers.
-    pub fn new(vehicle: Vehicle<T>, gains: TrackGains<T>, sampling: Sampling<T>) -> Result<Self, SetupError<T>> {
+impl<T: Real> Track<T> {
+    /// With `gains` that are found stable, and the origin for a reference.
+    ///
+    /// # Errors
+    /// The first output whose loop is not stable.
+    pub(crate) fn new(gains: TrackGains<T>) -> Result<Self, GainError<T>> {
         gains.check()?;
-        Ok(Self { gains, sampler: Sampler::new(vehicle, &sampling)? })
+        let zero = T::zero();
+        let reference = Reference { position: [Series::constant(zero); 3], yaw: Series::constant(zero) };
+        Ok(Self { gains, reference, solution: Solution::default(), approach: Approach::none() })
     }
 
-    /// With disturbance observers, reset.
-    pub fn with_observer(mut self, params: &ObserverParams<T>) -> Result<Self, SetupError<T>> {
-        self.sampler.set_observer(params)?;
-        Ok(self)
-    }
-
-    /// With limits on what is commanded.
-    pub fn with_limits(mut self, limits: ActuatorLimits<T>) -> Result<Self, SetupError<T>> {
-        self.sampler.set_actuation(limits)?;
-        Ok(self)
-    }
-
-    /// Starts from a stated ζ with disturbances at zero. Hover is ζ = 0.
-    pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        self.sampler.start(state, zeta);
-    }
-
-    /// Takes over from whatever applied `applied` until now, without a bump in thrust.
-    pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
-        self.sampler.take_over(state, applied);
-    }
-
-    /// The command for the coming hold, from the state sampled now and the reference about now. Call once every period.
+    /// What is to be tracked, about the coming sample: to be said every period before the step.
     #[inline]
-    pub fn step(&mut self, sampled: &State<T>, reference: &Reference<T>) -> Solution<T, TrackXi<T>> {
-        let reference = reference.shift(self.sampler.horizon());
-        let Ahead { state, zeta } = self.sampler.sample(sampled);
-        let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
-        let mut solution = law(vehicle, &self.gains, &reference, &state, &zeta, disturbance);
-        solution.command =
-            self.sampler.commit(solution.command, solution.u_zeta, solution.margins.q3 * solution.margins.q_b3);
-        solution
+    pub fn set_reference(&mut self, reference: &Reference<T>) {
+        self.reference = *reference;
+    }
+}
+
+impl<T: Real> Law<T> for Track<T> {
+    type Xi = TrackXi<T>;
+
+    #[inline(always)]
+    fn evaluate(&mut self, vehicle: &Vehicle<T>, ahead: &Ahead<T>, disturbance: &Disturbance<T>) {
+        let Ahead { state, zeta, horizon } = ahead;
+        let mut reference = self.reference.shift(*horizon);
+        let mut lift = lift(vehicle, state, zeta, disturbance);
+        if let Some(fading) = self.approach.leave(*horizon, &mut lift.position) {
+            self.approach.fade_yaw(&fading, &mut reference.yaw);
+        }
+        self.solution = answer(vehicle, &self.gains, &reference, state, &lift, disturbance);
     }
 
-    /// ζ when the next command begins to act (the next sample, without latency and lag).
-    pub fn zeta(&self) -> &[T; 4] {
-        self.sampler.zeta()
+    #[inline(always)]
+    fn solution(&self) -> &Solution<T, TrackXi<T>> {
+        &self.solution
     }
 
-    /// The disturbances found up to the last sample.
-    pub fn disturbance(&self) -> &Disturbance<T> {
-        self.sampler.disturbance()
+    #[inline(always)]
+    fn accept(&mut self, period: T, _is_saturated: bool) {
+        self.approach.advance(period);
     }
 
-    /// The vehicle as the law knows it.
-    pub fn vehicle(&self) -> &Vehicle<T> {
-        self.sampler.vehicle()
+    fn restart(&mut self, _: &State<T>) {
+        self.approach = Approach::none();
+    }
+
+    /// The reference is displaced to where the payload is and as fast as it is, and slides home, as a path does.
+    fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused> {
+        let Reference { position: [x, y, z], yaw } = &self.reference;
+        let position = Vector3::new(x.value(), y.value(), z.value());
+        let velocity = Vector3::new(x.derivative(1), y.derivative(1), z.derivative(1));
+        let yaw = (yaw.value() - Yaw::of(state).angle).wrap_angle();
+        self.approach = Approach::over(pace, state.position - position, state.velocity - velocity, yaw);
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn approach(&self) -> &Approach<T> {
+        &self.approach
     }
 }

@@ -5,6 +5,7 @@ use model::{Analytic, OutOfRange, Real, Series};
 use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
+use crate::ranges::{BENT_HALF_AXIS_A, BENT_HALF_AXIS_B, HEIGHT};
 
 /// h1 = (p1/a)⁴ + (p2/b)⁴ − 1,  h2 = p3 − c0 − A sin(k p1) with A = 0.5 m and k = 0.5 rad/m, along (3).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,10 +22,13 @@ const WAVENUMBER: f64 = 0.5;
 
 impl<T: Real> Bent<T> {
     /// Half-axes `a` and `b` 0.01 to 1000 m; height `c0` m, |c0| ≤ 10⁵.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges).
     pub fn new(a: T, b: T, c0: T) -> Result<Self, OutOfRange<T>> {
-        OutOfRange::check("a", a, 0.01, 1e3)?;
-        OutOfRange::check("b", b, 0.01, 1e3)?;
-        OutOfRange::check("c0", c0, -1e5, 1e5)?;
+        BENT_HALF_AXIS_A.check(a)?;
+        BENT_HALF_AXIS_B.check(b)?;
+        HEIGHT.check(c0)?;
         Ok(Self { per_a: T::one() / a, per_b: T::one() / b, c0 })
     }
 }

@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
 use crate::path::curve::velocity;
-use crate::path::{ConstantSpeed, Curve, Curved, FixedYaw, Located, Profiled};
+use crate::path::{Curve, Curved, Located};
+use crate::ranges::{P3, RADIUS};
 
 /// Circle of radius d1 about the n3 axis at height p3 = d2, with the outputs of (16):
 ///
@@ -22,15 +23,13 @@ pub struct Circle<T> {
 
 impl<T: Real> Circle<T> {
     /// A circle of `radius` 0.01 to 10⁵ m at `p3` m (negative is above the origin), |p3| ≤ 10⁵.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges).
     pub fn new(radius: T, p3: T) -> Result<Self, OutOfRange<T>> {
-        OutOfRange::check("radius", radius, 0.01, 1e5)?;
-        OutOfRange::check("p3", p3, -1e5, 1e5)?;
+        RADIUS.check(radius)?;
+        P3.check(p3)?;
         Ok(Self { radius, p3 })
-    }
-
-    /// The circle with a constant speed (m/s along ρ) and yaw 0: the paper's path.
-    pub fn at_speed(self, speed: T) -> Profiled<Self, ConstantSpeed<T>, FixedYaw<T>> {
-        Profiled { curve: self, speed: ConstantSpeed(speed), yaw: FixedYaw(T::zero()) }
     }
 }
 

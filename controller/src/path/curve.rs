@@ -1,9 +1,10 @@
 //! What a curve answers: where the payload is with respect to it.
 
-use model::{Analytic, Real, Series};
+use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
+use crate::path::{ConstantSpeed, FixedYaw, Profiled, SpeedProfile};
 
 /// Where a payload is with respect to a curve, along its Taylor series.
 #[derive(Clone, Copy, Debug)]
@@ -44,13 +45,39 @@ impl<T: Real> Located<T> {
     }
 }
 
-/// A closed curve in space, as two functions that vanish on it.
+/// A closed curve in space, as two functions that vanish on it. With a speed and a yaw it is a [`Path`](crate::Path):
+///
+/// ```
+/// use controller::{AlongTangent, Curve, Ellipse};
+///
+/// let path = Ellipse::new(5.0_f32, 4.0, -10.0, 0.3)?.at_speed(1.5)?.with_yaw(AlongTangent);
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 pub trait Curve<T: Real> {
     /// Evaluates the curve's functions along `position`.
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
 
     /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
     fn search(&mut self, _position: &Vector3<T>) {}
+
+    /// The curve at a constant `speed` (m/s along ρ, negative against it) with yaw 0.
+    ///
+    /// # Errors
+    /// `speed` is out of its [range](crate::ranges::SPEED).
+    fn at_speed(self, speed: T) -> Result<Profiled<Self, ConstantSpeed<T>, FixedYaw<T>>, OutOfRange<T>>
+    where
+        Self: Sized,
+    {
+        Ok(self.with_speed(ConstantSpeed::new(speed)?))
+    }
+
+    /// The curve at a `speed` that varies along it, with yaw 0.
+    fn with_speed<S: SpeedProfile<T, Self>>(self, speed: S) -> Profiled<Self, S, FixedYaw<T>>
+    where
+        Self: Sized,
+    {
+        Profiled { curve: self, speed, yaw: FixedYaw::north() }
+    }
 }
 
 /// A curve that knows how its tangent turns.

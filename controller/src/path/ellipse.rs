@@ -5,6 +5,7 @@ use model::{Analytic, OutOfRange, Real, Series};
 use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
+use crate::ranges::{HALF_AXIS_A, HALF_AXIS_B, HEIGHT, SLOPE};
 
 /// h1 = (p1/a)² + (p2/b)² − 1,  h2 = p3 − c0 − c1 p1, both along (3): seen from above (n3 down), ρ turns from n2 to n1.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,11 +18,14 @@ pub struct Ellipse<T> {
 
 impl<T: Real> Ellipse<T> {
     /// Half-axes `a` and `b` 0.01 to 10⁵ m; height `c0` m, |c0| ≤ 10⁵; slope |c1| ≤ 100.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges).
     pub fn new(a: T, b: T, c0: T, c1: T) -> Result<Self, OutOfRange<T>> {
-        OutOfRange::check("a", a, 0.01, 1e5)?;
-        OutOfRange::check("b", b, 0.01, 1e5)?;
-        OutOfRange::check("c0", c0, -1e5, 1e5)?;
-        OutOfRange::check("c1", c1, -100.0, 100.0)?;
+        HALF_AXIS_A.check(a)?;
+        HALF_AXIS_B.check(b)?;
+        HEIGHT.check(c0)?;
+        SLOPE.check(c1)?;
         Ok(Self { per_a: T::one() / a, per_b: T::one() / b, c0, c1 })
     }
 }

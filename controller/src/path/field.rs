@@ -1,10 +1,11 @@
 //! Functions of position, for speeds and yaws.
 
-use model::{Analytic, Real, Series};
+use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
 use crate::path::{Formula, Located, SpeedProfile, YawProfile};
+use crate::ranges::{LINEAR_GRADIENT, LINEAR_VALUE, POINTING};
 
 /// A function of position given as a formula. In a [`Formula`] it is a [`SpeedProfile`] (in m/s) and a [`YawProfile`] (in rad).
 pub trait ScalarField<T: Real> {
@@ -29,10 +30,23 @@ impl<T: Real, F: ScalarField<T>> YawProfile<T> for Formula<F> {
 /// `value` at the origin, and from there a constant `gradient` (per m, in N).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linear<T> {
-    /// The value at p = 0.
-    pub value: T,
-    /// Its change per metre along n1, n2, n3.
-    pub gradient: Vector3<T>,
+    value: T,
+    gradient: Vector3<T>,
+}
+
+impl<T: Real> Linear<T> {
+    /// `value` at p = 0, and its change per metre along n1, n2, n3.
+    ///
+    /// # Errors
+    /// A number is out of its range, [`LINEAR_VALUE`](crate::ranges::LINEAR_VALUE) or
+    /// [`LINEAR_GRADIENT`](crate::ranges::LINEAR_GRADIENT).
+    pub fn new(value: T, gradient: Vector3<T>) -> Result<Self, OutOfRange<T>> {
+        LINEAR_VALUE.check(value)?;
+        for &component in &gradient {
+            LINEAR_GRADIENT.check(component)?;
+        }
+        Ok(Self { value, gradient })
+    }
 }
 
 impl<T: Real> ScalarField<T> for Linear<T> {
@@ -46,10 +60,21 @@ impl<T: Real> ScalarField<T> for Linear<T> {
 /// atan2(y − p2, x − p1), rad: as a yaw, b1 points towards a vertical line. Not defined on that line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointingAt<T> {
-    /// Along n1, m.
-    pub x: T,
-    /// Along n2, m.
-    pub y: T,
+    x: T,
+    y: T,
+}
+
+impl<T: Real> PointingAt<T> {
+    /// The line through p1 = `x`, p2 = `y`, m.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges::POINTING).
+    pub fn new(x: T, y: T) -> Result<Self, OutOfRange<T>> {
+        for (range, place) in POINTING.iter().zip([x, y]) {
+            range.check(place)?;
+        }
+        Ok(Self { x, y })
+    }
 }
 
 impl<T: Real> ScalarField<T> for PointingAt<T> {

@@ -41,6 +41,9 @@ pub struct FourierPath<T, const K: usize> {
 
 impl<T: Real, const K: usize> FourierPath<T, K> {
     /// The path of `harmonics` (|coefficients| ≤ 10⁵ m), if its tangent keeps 6° from the reference direction.
+    ///
+    /// # Errors
+    /// It does not, or a coefficient is out of range.
     pub fn new(harmonics: Harmonics<T, K>) -> Result<Self, OutOfRange<T>> {
         harmonics.check()?;
         let reference = Vector3::from(harmonics.reference);

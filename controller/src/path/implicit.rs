@@ -10,8 +10,7 @@ use crate::path::{Curve, Curved, Located};
 /// [`Curve`] with [curvature](Curved): gradients and their derivatives come from dual numbers over series.
 ///
 /// ```
-/// use controller::path::{ConstantSpeed, FixedYaw, Formula, Implicit, Profiled};
-/// use controller::Analytic;
+/// use controller::{Analytic, Curve, Formula, Implicit};
 ///
 /// /// A rounded square of side 2 m, 3 m above the origin, with one side raised.
 /// struct Ramp;
@@ -22,7 +21,8 @@ use crate::path::{Curve, Curved, Located};
 ///     }
 /// }
 ///
-/// let path = Profiled { curve: Formula(Ramp), speed: ConstantSpeed(0.5), yaw: FixedYaw(0.0) };
+/// let path = Formula(Ramp).at_speed(0.5)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
 /// ```
 pub trait Implicit<T: Real> {
     /// h1 and h2 at the point p (N, m).

@@ -103,6 +103,13 @@ pub struct Profiled<C, S, Y> {
     pub yaw: Y,
 }
 
+impl<C, S, Y> Profiled<C, S, Y> {
+    /// The same with another `yaw`.
+    pub fn with_yaw<Z>(self, yaw: Z) -> Profiled<C, S, Z> {
+        Profiled { curve: self.curve, speed: self.speed, yaw }
+    }
+}
+
 impl<T, C, S, Y> Path<T> for Profiled<C, S, Y>
 where
     T: Real,

@@ -4,6 +4,7 @@ use model::{Analytic, OutOfRange, Real, Series};
 
 use crate::law::lift::PositionSeries;
 use crate::path::{Curved, Located};
+use crate::ranges::{CENTRIPETAL, SPEED};
 
 /// The speed v_d prescribed along a curve `C`, as a function of position.
 pub trait SpeedProfile<T: Real, C> {
@@ -13,7 +14,18 @@ pub trait SpeedProfile<T: Real, C> {
 
 /// v_d constant, m/s along ρ; negative flies it the other way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ConstantSpeed<T>(pub T);
+pub struct ConstantSpeed<T>(T);
+
+impl<T: Real> ConstantSpeed<T> {
+    /// `speed`, m/s.
+    ///
+    /// # Errors
+    /// It is out of its [range](crate::ranges::SPEED).
+    pub fn new(speed: T) -> Result<Self, OutOfRange<T>> {
+        SPEED.check(speed)?;
+        Ok(Self(speed))
+    }
+}
 
 impl<T: Real, C> SpeedProfile<T, C> for ConstantSpeed<T> {
     #[inline]
@@ -37,10 +49,13 @@ pub struct CurvatureLimited<T> {
 }
 
 impl<T: Real> CurvatureLimited<T> {
-    /// At most `speed` (m/s, |v0| ≤ 100, negative flies the other way) and `acceleration` (m/s², 0.01 to 100).
+    /// At most `speed` (m/s, negative flies the other way) and `acceleration` (m/s²).
+    ///
+    /// # Errors
+    /// One of them is out of its range, [`SPEED`](crate::ranges::SPEED) or [`CENTRIPETAL`](crate::ranges::CENTRIPETAL).
     pub fn new(speed: T, acceleration: T) -> Result<Self, OutOfRange<T>> {
-        OutOfRange::check("speed", speed, -100.0, 100.0)?;
-        OutOfRange::check("acceleration", acceleration, 0.01, 100.0)?;
+        SPEED.check(speed)?;
+        CENTRIPETAL.check(acceleration)?;
         let radius = speed * speed / acceleration;
         Ok(Self { speed, radius_squared: radius * radius })
     }

@@ -5,6 +5,7 @@ use model::{Analytic, OutOfRange, Real, Series};
 use crate::law::lift::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
+use crate::ranges::{HALF_AXIS_A, HALF_AXIS_B, HALF_EXPONENT, HEIGHT, SLOPE};
 
 /// h1 = (p1/a)ⁿ + (p2/b)ⁿ − 1,  h2 = p3 − c0 − c1 p1, n even, along (3) as the ellipse: n = 2 is one, and the larger n, the closer
 /// to a rectangle with rounded corners.
@@ -22,13 +23,16 @@ pub struct Superellipse<T> {
 
 impl<T: Real> Superellipse<T> {
     /// Half-axes `a` and `b` 0.01 to 10⁵ m; `half_exponent` n/2 1 to 10; height `c0` m, |c0| ≤ 10⁵; slope |c1| ≤ 100.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges).
     pub fn new(a: T, b: T, half_exponent: u8, c0: T, c1: T) -> Result<Self, OutOfRange<T>> {
         let n = 2.0 * f64::from(half_exponent);
-        OutOfRange::check("a", a, 0.01, 1e5)?;
-        OutOfRange::check("b", b, 0.01, 1e5)?;
-        OutOfRange::check("half_exponent", T::lit(f64::from(half_exponent)), 1.0, 10.0)?;
-        OutOfRange::check("c0", c0, -1e5, 1e5)?;
-        OutOfRange::check("c1", c1, -100.0, 100.0)?;
+        HALF_AXIS_A.check(a)?;
+        HALF_AXIS_B.check(b)?;
+        HALF_EXPONENT.check(T::lit(f64::from(half_exponent)))?;
+        HEIGHT.check(c0)?;
+        SLOPE.check(c1)?;
         Ok(Self {
             per_a: T::one() / a,
             per_b: T::one() / b,

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
 use crate::path::{Curve, Curved, Located};
+use crate::ranges::{COORDINATE, HALF_AXIS_A, HALF_AXIS_B};
 
 /// Ellipse about the centre c in the plane of the orthonormal axes e1 and e2, n = e1 × e2:
 ///
@@ -28,12 +29,15 @@ impl<T: Real> Tilted<T> {
     ///
     /// `normal` and `major` are directions of any length above 10⁻³; `major` counts in so far as it lies in the plane, and must
     /// stand at least 0.06 rad from `normal`.
+    ///
+    /// # Errors
+    /// A number is out of its [range](crate::ranges).
     pub fn new(center: Vector3<T>, normal: Vector3<T>, major: Vector3<T>, a: T, b: T) -> Result<Self, OutOfRange<T>> {
         for coordinate in center.iter() {
-            OutOfRange::check("center", *coordinate, -1e5, 1e5)?;
+            OutOfRange::check("center", *coordinate, COORDINATE.min, COORDINATE.max)?;
         }
-        OutOfRange::check("a", a, 0.01, 1e5)?;
-        OutOfRange::check("b", b, 0.01, 1e5)?;
+        HALF_AXIS_A.check(a)?;
+        HALF_AXIS_B.check(b)?;
         let n = unit("length of normal", &normal)?;
         let major = unit("length of major", &major)?;
         let across = n.cross(&major);
@@ -45,6 +49,9 @@ impl<T: Real> Tilted<T> {
     }
 
     /// A circle of `radius` m, seen against `normal` turning anticlockwise.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
     pub fn circle(center: Vector3<T>, normal: Vector3<T>, radius: T) -> Result<Self, OutOfRange<T>> {
         // The coordinate axis farthest from the normal.
         let [x, y, z] = [normal.x.abs(), normal.y.abs(), normal.z.abs()];

@@ -1,14 +1,15 @@
 //! Yaws prescribed along a curve.
 
-use model::{Analytic, Real, Series};
+use model::{Analytic, OutOfRange, Real, Series};
 
 use crate::law::lift::PositionSeries;
 use crate::path::Located;
+use crate::ranges::YAW;
 
 /// The yaw ψ_d prescribed along a curve, as a function of position.
 ///
-/// A yaw is defined modulo 2π: any representative will do, and a jump of 2π between two samples is none in flight. Its
-/// derivatives know no such jump.
+/// A yaw is defined modulo 2π: any representative will do. A jump of 2π between two samples has no effect in flight, and does
+/// not appear in the derivatives.
 pub trait YawProfile<T: Real> {
     /// ψ_d, rad, orders 0 to 2.
     fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3>;
@@ -16,7 +17,24 @@ pub trait YawProfile<T: Real> {
 
 /// ψ_d constant, rad.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FixedYaw<T>(pub T);
+pub struct FixedYaw<T>(T);
+
+impl<T: Real> FixedYaw<T> {
+    /// `yaw`, rad.
+    ///
+    /// # Errors
+    /// It is out of its [range](crate::ranges::YAW).
+    pub fn new(yaw: T) -> Result<Self, OutOfRange<T>> {
+        YAW.check(yaw)?;
+        Ok(Self(yaw))
+    }
+
+    /// 0: b1 along n1.
+    #[must_use]
+    pub fn north() -> Self {
+        Self(T::zero())
+    }
+}
 
 impl<T: Real> YawProfile<T> for FixedYaw<T> {
     #[inline]

@@ -3,11 +3,16 @@
 use model::{Command, OutOfRange, Real};
 use nalgebra::Vector3;
 
+use crate::ranges::{MAX_THRUST, MAX_TORQUE, MIN_THRUST};
+
 /// What turns a command into thrust and torque. The law's memory goes on from what it says was applied, so nothing winds up.
 ///
 /// [`ActuatorLimits`] is a box; [`Rotors`](crate::sampled::allocation::Rotors) is a set of rotors.
 pub trait Actuation<T: Real>: Clone {
     /// `Ok` if every parameter is in range.
+    ///
+    /// # Errors
+    /// The first that is not.
     fn check(&self) -> Result<(), OutOfRange<T>>;
 
     /// What is applied when `command` is asked for: finite for every finite command.
@@ -15,6 +20,11 @@ pub trait Actuation<T: Real>: Clone {
 
     /// The least thrust, N, not below zero: what an armed vehicle applies on the ground.
     fn least_thrust(&self) -> T;
+
+    /// The largest thrust, N.
+    fn largest_thrust(&self) -> T {
+        self.apply(&Command::of_thrust(T::lit(MAX_THRUST.max))).thrust
+    }
 }
 
 /// Thrust and each torque, limited on their own.
@@ -30,6 +40,7 @@ pub struct ActuatorLimits<T> {
 
 impl<T: Real> ActuatorLimits<T> {
     /// None to speak of: ±10⁶ N and N·m.
+    #[must_use]
     pub fn none() -> Self {
         let far = T::lit(1e6);
         Self { min_thrust: -far, max_thrust: far, max_torque: [far; 3] }
@@ -48,12 +59,12 @@ impl<T: Real> ActuatorLimits<T> {
 
 impl<T: Real> Actuation<T> for ActuatorLimits<T> {
     fn check(&self) -> Result<(), OutOfRange<T>> {
-        OutOfRange::check("min_thrust", self.min_thrust, -1e6, 1e6)?;
-        OutOfRange::within("max_thrust", self.max_thrust, self.min_thrust, T::lit(1e6))?;
-        let [t1, t2, t3] = self.max_torque;
-        OutOfRange::check("max_torque[0]", t1, 0.0, 1e6)?;
-        OutOfRange::check("max_torque[1]", t2, 0.0, 1e6)?;
-        OutOfRange::check("max_torque[2]", t3, 0.0, 1e6)
+        MIN_THRUST.check(self.min_thrust)?;
+        OutOfRange::within("max_thrust", self.max_thrust, self.min_thrust, T::lit(MAX_THRUST.max))?;
+        for (range, &torque) in MAX_TORQUE.iter().zip(&self.max_torque) {
+            range.check(torque)?;
+        }
+        Ok(())
     }
 
     /// The nearest allowed command.
@@ -88,8 +99,8 @@ pub(crate) struct Actuators<T> {
     waiting: usize,
     /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
     decay: T,
-    /// 1 without lag, where a command acts at once; 0 with one.
-    jump: T,
+    /// Share of a command's step that acts at once: 1 without lag, 0 with one. A number, so that no period branches.
+    at_once: T,
     /// Share of the newest command in the mean over the law's look ahead.
     share: T,
     /// What acts up to this sample, and by how much that stepped at the last one.
@@ -102,11 +113,12 @@ pub(crate) struct Actuators<T> {
 impl<T: Real> Actuators<T> {
     /// With `latency` (rounded to whole periods) and `lag`, s; the law looks `horizon` s ahead.
     pub(crate) fn new(period: T, latency: T, lag: T, horizon: T, command: Command<T>) -> Result<Self, OutOfRange<T>> {
+        // A thousandth of a period is rounding's.
+        OutOfRange::within("latency", latency, T::zero(), period * T::lit(MAX_DELAY as f64 + 1e-3))?;
         let periods = latency / period + T::lit(0.5);
-        OutOfRange::check("latency in periods", periods, 0.0, SLOTS as f64 - 1e-3)?;
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
         let has_lag = lag > T::zero();
-        let (decay, jump) = if has_lag { ((-period / lag).exp(), T::zero()) } else { (T::zero(), T::one()) };
+        let (decay, at_once) = if has_lag { ((-period / lag).exp(), T::zero()) } else { (T::zero(), T::one()) };
         // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then the line's commands pass from
         // the applied to the newest.
         let acting = horizon - latency;
@@ -121,7 +133,7 @@ impl<T: Real> Actuators<T> {
             delay,
             waiting: 0,
             decay,
-            jump,
+            at_once,
             share,
             applied: command,
             step: Command::zero(),
@@ -180,7 +192,7 @@ impl<T: Real> Actuators<T> {
         };
         let step = delayed.minus(&self.applied);
         self.applied = delayed.minus(&step.times(self.decay));
-        self.step = step.times(self.jump);
+        self.step = step.times(self.at_once);
         self.drift = command.minus(&self.applied).times(self.share);
     }
 }

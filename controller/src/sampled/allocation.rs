@@ -22,6 +22,7 @@
 use model::{Command, OutOfRange, Real};
 use nalgebra::Vector3;
 
+use crate::ranges::{MAX_SPEED, MIN_SPEED, ROTOR_ARM, ROTOR_PLACE, THRUST_COEFFICIENT, TORQUE_COEFFICIENT};
 use crate::sampled::actuator::Actuation;
 
 /// One of the rotors, all of which are alike.
@@ -53,10 +54,10 @@ impl<T: Real> RotorParams<T> {
     }
 
     fn check(&self) -> Result<(), OutOfRange<T>> {
-        OutOfRange::check("thrust_coefficient", self.thrust_coefficient, 1e-10, 1.0)?;
-        OutOfRange::check("torque_coefficient", self.torque_coefficient, 1e-12, 1.0)?;
-        OutOfRange::check("max_speed", self.max_speed, 1.0, 1e5)?;
-        OutOfRange::check("min_speed", self.min_speed, 0.0, 0.9 * self.max_speed.to_f64())
+        THRUST_COEFFICIENT.check(self.thrust_coefficient)?;
+        TORQUE_COEFFICIENT.check(self.torque_coefficient)?;
+        MAX_SPEED.check(self.max_speed)?;
+        OutOfRange::check("min_speed", self.min_speed, MIN_SPEED.min, 0.9 * self.max_speed.to_f64())
     }
 }
 
@@ -91,7 +92,7 @@ pub struct Rotors<T, const N: usize> {
     inverse: [[T; 4]; N],
     /// N per newton of its force: the first column's reciprocals.
     thrust_per_force: [T; N],
-    /// N either way for roll and pitch, at the thrust that leaves most of it.
+    /// Force, N, that each rotor has left either way for roll and pitch, at the thrust where that is largest.
     room: [T; N],
     least_force: T,
     largest_force: T,
@@ -105,10 +106,14 @@ const LEAST_PIVOT: f64 = 1e-4;
 
 impl<T: Real, const N: usize> Rotors<T, N> {
     /// Rotors at `places`, their axes along b3.
+    ///
+    /// # Errors
+    /// As [`from_matrix`](Self::from_matrix), or a place is out of [its range](crate::ranges::ROTOR_PLACE).
     pub fn new(rotor: RotorParams<T>, places: &[Place<T>; N]) -> Result<Self, OutOfRange<T>> {
         for place in places {
-            OutOfRange::check("x", place.x, -100.0, 100.0)?;
-            OutOfRange::check("y", place.y, -100.0, 100.0)?;
+            for (range, along) in ROTOR_PLACE.iter().zip([place.x, place.y]) {
+                range.check(along)?;
+            }
         }
         let drag = rotor.torque_coefficient / rotor.thrust_coefficient;
         let mut effect = [[T::one(); N]; 4];
@@ -122,6 +127,10 @@ impl<T: Real, const N: usize> Rotors<T, N> {
 
     /// Rotors that give thrust and torque (T, τ) = B f, by the matrix B = `effect` itself: for tilted axes, or a measured one. Each rotor must
     /// have a part in thrust alone (the first column of B⁺ positive), as in every configuration where rotors lift.
+    ///
+    /// # Errors
+    /// A number of `rotor` or `effect` is out of range, the rotors do not act on thrust and each torque apart, or a rotor has no
+    /// share of the thrust or no room for torque.
     pub fn from_matrix(rotor: RotorParams<T>, effect: &[[T; N]; 4]) -> Result<Self, OutOfRange<T>> {
         rotor.check()?;
         for x in effect.iter().flatten() {
@@ -231,12 +240,18 @@ impl<T: Real, const N: usize> Rotors<T, N> {
 
 impl<T: Real> Rotors<T, 4> {
     /// A quadrotor with arms of `arm` m, its first rotor in front; spins alternate around it, counter-clockwise first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
     pub fn quad_plus(rotor: RotorParams<T>, arm: T) -> Result<Self, OutOfRange<T>> {
         Self::new(rotor, &ring(arm, 0.0)?)
     }
 
     /// A quadrotor with arms of `arm` m at 45° to its axes: front right, rear right, rear left, front left; spins alternate,
     /// counter-clockwise first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
     pub fn quad_x(rotor: RotorParams<T>, arm: T) -> Result<Self, OutOfRange<T>> {
         Self::new(rotor, &ring(arm, 0.5)?)
     }
@@ -244,6 +259,9 @@ impl<T: Real> Rotors<T, 4> {
 
 impl<T: Real> Rotors<T, 6> {
     /// A hexarotor with arms of `arm` m, its first rotor in front; spins alternate, counter-clockwise first.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
     pub fn hexa(rotor: RotorParams<T>, arm: T) -> Result<Self, OutOfRange<T>> {
         Self::new(rotor, &ring(arm, 0.0)?)
     }
@@ -267,7 +285,7 @@ impl<T: Real, const N: usize> Actuation<T> for Rotors<T, N> {
 
 /// N places on a ring, clockwise seen from above, the first `turned` steps from b1.
 fn ring<T: Real, const N: usize>(arm: T, turned: f64) -> Result<[Place<T>; N], OutOfRange<T>> {
-    OutOfRange::check("arm", arm, 0.01, 100.0)?;
+    ROTOR_ARM.check(arm)?;
     Ok(core::array::from_fn(|i| {
         let angle = (i as f64 + turned) * core::f64::consts::TAU / N as f64;
         let (sin, cos) = T::lit(angle).sin_cos();

@@ -1,6 +1,7 @@
 //! What stands between a law in continuous time and a computer with actuators: a period, what is applied, what disturbs.
 
-pub mod actuator;
-pub mod allocation;
-pub mod observer;
-pub mod sampler;
+pub(crate) mod actuator;
+pub(crate) mod allocation;
+pub(crate) mod controller;
+pub(crate) mod observer;
+pub(crate) mod sampler;

@@ -8,8 +8,9 @@
 //! v̇ = g e3 + d + λ q,   q̈ = κ b3 + c λ q + δ,   κ (b3·q) = −(|q̇|² + c λ + δ·q),   J ω̇ = J ω × ω + τ + τ_d
 //! ```
 //!
-//! which can stand for wind on either body, wrong masses and wrong thrust alike. None of these stands still as seen from a payload on its way, so d and δ
-//! are found with their rates, by linear observers of three states an axis; a torque mostly comes from the vehicle itself, and two do:
+//! which can stand for wind on either body, wrong masses and wrong thrust alike. Seen from a moving payload none of these is
+//! constant, so d and δ are estimated together with their rates, by three states per axis. A torque mostly originates on the
+//! vehicle; two states suffice:
 //!
 //! ```text
 //! v̂˙ = model + d̂ + 3 o e,   d̂˙ = r̂ + 3 o² e,   r̂˙ = o³ e,   e = v − v̂
@@ -21,6 +22,8 @@
 
 use model::{Disturbance, OutOfRange, Real, State, Vehicle};
 use nalgebra::Vector3;
+
+use crate::ranges::{PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, TORQUE_BANDWIDTH, TORQUE_BOUND};
 
 /// Observer bandwidths o, rad/s, and the bounds of what they may find. A bandwidth of zero switches an observer off.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +44,7 @@ pub struct ObserverParams<T> {
 
 impl<T: Real> ObserverParams<T> {
     /// All off.
+    #[must_use]
     pub fn off() -> Self {
         Self::with_bandwidth(T::zero())
     }
@@ -51,9 +55,9 @@ impl<T: Real> ObserverParams<T> {
             payload_bandwidth: bandwidth,
             rod_bandwidth: bandwidth,
             torque_bandwidth: bandwidth,
-            payload_bound: T::lit(15.0),
-            rod_bound: T::lit(10.0),
-            torque_bound: T::one(),
+            payload_bound: PAYLOAD_BOUND.default(),
+            rod_bound: ROD_BOUND.default(),
+            torque_bound: TORQUE_BOUND.default(),
         }
     }
 
@@ -71,12 +75,12 @@ impl<T: Real> ObserverParams<T> {
     }
 
     fn check(&self) -> Result<(), OutOfRange<T>> {
-        OutOfRange::check("payload_bandwidth", self.payload_bandwidth, 0.0, 100.0)?;
-        OutOfRange::check("rod_bandwidth", self.rod_bandwidth, 0.0, 100.0)?;
-        OutOfRange::check("torque_bandwidth", self.torque_bandwidth, 0.0, 100.0)?;
-        OutOfRange::check("payload_bound", self.payload_bound, 0.0, 1e3)?;
-        OutOfRange::check("rod_bound", self.rod_bound, 0.0, 1e3)?;
-        OutOfRange::check("torque_bound", self.torque_bound, 0.0, 1e3)
+        PAYLOAD_BANDWIDTH.check(self.payload_bandwidth)?;
+        ROD_BANDWIDTH.check(self.rod_bandwidth)?;
+        TORQUE_BANDWIDTH.check(self.torque_bandwidth)?;
+        PAYLOAD_BOUND.check(self.payload_bound)?;
+        ROD_BOUND.check(self.rod_bound)?;
+        TORQUE_BOUND.check(self.torque_bound)
     }
 }
 
@@ -87,7 +91,7 @@ struct Channel<T> {
     disturbance_gain: T,
     rate_gain: T,
     bound_squared: T,
-    /// The velocity predicted up to the left end of the running period's trapezoid.
+    /// The velocity predicted up to the after end of the running period's trapezoid.
     predicted: Vector3<T>,
 }
 
@@ -118,19 +122,19 @@ impl<T: Real> Channel<T> {
         }
     }
 
-    /// Ends the running period with the acceleration at its `right` end, corrects the velocity by what was `measured`, and begins the next with the
-    /// acceleration at its `left` end. Returns the innovation.
+    /// Ends the running period with the acceleration just `before` the sample, corrects the velocity by what was `measured`, and
+    /// begins the next with the one just `after` it. Returns the innovation.
     #[inline]
     fn correct(
         &mut self,
         measured: &Vector3<T>,
-        right: &Vector3<T>,
-        left: &Vector3<T>,
+        before: &Vector3<T>,
+        after: &Vector3<T>,
         half_period: T,
     ) -> Vector3<T> {
-        let predicted = self.predicted + right * half_period;
+        let predicted = self.predicted + before * half_period;
         let innovation = measured - predicted;
-        self.predicted = predicted + innovation * self.velocity_gain + left * half_period;
+        self.predicted = predicted + innovation * self.velocity_gain + after * half_period;
         innovation
     }
 
@@ -139,13 +143,13 @@ impl<T: Real> Channel<T> {
     fn grow(
         &mut self,
         measured: &Vector3<T>,
-        right: &Vector3<T>,
-        left: &Vector3<T>,
+        before: &Vector3<T>,
+        after: &Vector3<T>,
         period: T,
         disturbance: &mut Vector3<T>,
         rate: &mut Vector3<T>,
     ) {
-        let innovation = self.correct(measured, right, left, period * T::lit(0.5));
+        let innovation = self.correct(measured, before, after, period * T::lit(0.5));
         let found = *rate + innovation * self.rate_gain;
         let is_taken = self.take(innovation * self.disturbance_gain + found * period, disturbance);
         *rate = if is_taken { found } else { Vector3::zeros() };
@@ -207,30 +211,36 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Corrects d̂ by the sampled payload's `velocity`: `right` is the model's acceleration that ends the last period, `left` the one that begins the
-    /// next.
+    /// Corrects d̂ by the sampled payload's `velocity`. `before`: the model's acceleration just before the sample; `after`: just
+    /// after it.
     ///
-    /// Thrust and torque step between periods, and the model is affine in them: the step at the last sample, which `left` of then could
-    /// not know, is made good by `right`. So it is with δ̂ and τ̂_d.
+    /// Commands step at samples, and the model is affine in them. The last sample's `after` could not know its step, so this
+    /// sample's `before` makes it good: the trapezoid over the last period has both of its ends. So it is with δ̂ and τ̂_d.
     #[inline]
-    pub(crate) fn correct_payload(&mut self, velocity: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
+    pub(crate) fn correct_payload(&mut self, velocity: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) {
         let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
-        self.payload.grow(velocity, right, left, self.period, payload, payload_rate);
+        self.payload.grow(velocity, before, after, self.period, payload, payload_rate);
     }
 
     /// Corrects δ̂ by the sampled `rod` and its `rate`.
     #[inline]
-    pub(crate) fn correct_rod(&mut self, rod: &Vector3<T>, rate: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
+    pub(crate) fn correct_rod(
+        &mut self,
+        rod: &Vector3<T>,
+        rate: &Vector3<T>,
+        before: &Vector3<T>,
+        after: &Vector3<T>,
+    ) {
         let Disturbance { rod: delta, rod_rate: delta_1, .. } = &mut self.estimate;
-        self.rod.grow(rate, right, left, self.period, delta, delta_1);
+        self.rod.grow(rate, before, after, self.period, delta, delta_1);
         *delta -= rod * rod.dot(delta);
         *delta_1 -= rod * rod.dot(delta_1);
     }
 
     /// Corrects τ̂_d by the sampled `body_rate`.
     #[inline]
-    pub(crate) fn correct_body(&mut self, body_rate: &Vector3<T>, right: &Vector3<T>, left: &Vector3<T>) {
-        let missed = self.body.correct(body_rate, right, left, self.period * T::lit(0.5));
+    pub(crate) fn correct_body(&mut self, body_rate: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) {
+        let missed = self.body.correct(body_rate, before, after, self.period * T::lit(0.5));
         let correction = missed.component_mul(&self.inertia) * self.body.disturbance_gain;
         self.body.take(correction, &mut self.estimate.torque);
     }

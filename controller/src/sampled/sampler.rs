@@ -9,21 +9,24 @@ use model::{
     Command, Disturbance, OutOfRange, Real, State, Vehicle,
     dynamics::{Model, across, advance, turn},
 };
-use nalgebra::Vector3;
 
+use crate::error::Refused;
 use crate::law::compensator::{continuing, propagate};
 use crate::law::lift::lift;
+use crate::law::solution::Solution;
+use crate::law::{Ahead, Law};
+use crate::ranges::{LATENCY, MAX_THRUST, PERIOD, ROTOR_LAG};
 use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
 use crate::sampled::observer::{Observer, ObserverParams};
 
 /// When the law is called and when its command acts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling<T> {
-    /// Control period h, s, 10⁻⁴ to 0.2.
+    /// Control period h, s.
     pub period: T,
-    /// Known time from the state's sample to its command's start, s, at most [`MAX_DELAY`](crate::sampled::actuator::MAX_DELAY) periods.
+    /// Known time from the state's sample to its command's start, s, at most [`MAX_DELAY`](crate::MAX_DELAY) periods.
     pub latency: T,
-    /// Known time constant of the rotors' first-order lag, s, 0 to 0.5.
+    /// Known time constant of the rotors' first-order lag, s.
     pub rotor_lag: T,
     /// Evaluate the law for when its command acts: `latency` + `rotor_lag` + h/2 ahead. Off, it is evaluated at the sample.
     pub look_ahead: bool,
@@ -47,13 +50,13 @@ impl<T: Real> Sampling<T> {
     }
 
     fn check(&self) -> Result<(), OutOfRange<T>> {
-        OutOfRange::check("period", self.period, 1e-4, 0.2)?;
-        OutOfRange::check("latency", self.latency, 0.0, 0.5)?;
-        OutOfRange::check("rotor_lag", self.rotor_lag, 0.0, 0.5)
+        PERIOD.check(self.period)?;
+        LATENCY.check(self.latency)?;
+        ROTOR_LAG.check(self.rotor_lag)
     }
 
     /// Half a period where the law looks ahead.
-    fn half_hold(&self) -> T {
+    pub(crate) fn half_hold(&self) -> T {
         if self.look_ahead { self.period * T::lit(0.5) } else { T::zero() }
     }
 
@@ -66,16 +69,15 @@ impl<T: Real> Sampling<T> {
 /// Time constant with which thrust and torque pass from what was applied before a take-over to the law's, s.
 const TAKE_OVER: f64 = 0.05;
 
-/// Where a law is to be evaluated: state and ζ at the instant its command acts.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ahead<T> {
-    pub(crate) state: State<T>,
-    pub(crate) zeta: [T; 4],
-}
-
-/// The memory of a sampled law.
+/// What a sampled law remembers, whatever law it is: ζ, the commands on their way, the observers. It is lent to one law at a time.
 #[derive(Clone, Debug)]
 pub struct Sampler<T, A = ActuatorLimits<T>> {
+    memory: Memory<T>,
+    actuation: A,
+}
+
+#[derive(Clone, Debug)]
+struct Memory<T> {
     vehicle: Vehicle<T>,
     period: T,
     half_hold: T,
@@ -90,7 +92,6 @@ pub struct Sampler<T, A = ActuatorLimits<T>> {
     bump: Command<T>,
     /// What a period leaves of it.
     fade: T,
-    actuation: A,
     /// The last command's thrust was not what the actuators could apply.
     is_saturated: bool,
     actuators: Actuators<T>,
@@ -103,8 +104,8 @@ impl<T: Real> Sampler<T> {
         sampling.check()?;
         let Sampling { period, latency, rotor_lag, .. } = *sampling;
         let horizon = sampling.horizon();
-        let hover = Command { thrust: vehicle.hover_thrust(), torque: Vector3::zeros() };
-        Ok(Self {
+        let hover = Command::of_thrust(vehicle.hover_thrust());
+        let memory = Memory {
             vehicle,
             period,
             half_hold: sampling.half_hold(),
@@ -114,50 +115,26 @@ impl<T: Real> Sampler<T> {
             is_softening: false,
             bump: Command::zero(),
             fade: (-period / T::lit(TAKE_OVER)).exp(),
-            actuation: ActuatorLimits::none(),
             is_saturated: false,
             actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
             observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
-        })
+        };
+        Ok(Self { memory, actuation: ActuatorLimits::none() })
     }
 }
 
 impl<T: Real, A: Actuation<T>> Sampler<T, A> {
-    /// The same memory with another actuation.
+    /// The same memory with another actuation, which must be able to hover.
     pub(crate) fn with_actuation<B: Actuation<T>>(self, actuation: B) -> Result<Sampler<T, B>, OutOfRange<T>> {
         actuation.check()?;
-        let Self {
-            vehicle,
-            period,
-            half_hold,
-            horizon,
-            zeta,
-            u_zeta,
-            is_softening,
-            bump,
-            fade,
-            is_saturated,
-            actuators,
-            observer,
-            ..
-        } = self;
-        Ok(Sampler {
-            vehicle,
-            period,
-            half_hold,
-            horizon,
-            zeta,
-            u_zeta,
-            is_softening,
-            bump,
-            fade,
-            actuation,
-            is_saturated,
-            actuators,
-            observer,
-        })
+        let hover = self.memory.vehicle.hover_thrust();
+        let (least, largest) = (actuation.least_thrust(), actuation.largest_thrust());
+        OutOfRange::within("min_thrust", least, T::zero(), hover)?;
+        OutOfRange::within("max_thrust", largest, hover, T::lit(MAX_THRUST.max))?;
+        Ok(Sampler { memory: self.memory, actuation })
     }
 
+    /// Changes what the actuators can apply, in flight too, where less than hover's thrust may be the truth.
     pub(crate) fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
         actuation.check()?;
         self.actuation = actuation;
@@ -165,25 +142,55 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     pub(crate) fn set_observer(&mut self, params: &ObserverParams<T>) -> Result<(), OutOfRange<T>> {
-        self.observer = Observer::new(&self.vehicle, params, self.period)?;
+        self.memory.observer = Observer::new(&self.memory.vehicle, params, self.memory.period)?;
         Ok(())
     }
 
+    /// Asks `law` for its answer where its command acts.
+    #[inline(always)]
+    pub(crate) fn ask<L: Law<T>>(&self, law: &mut L, ahead: &Ahead<T>) {
+        law.evaluate(&self.memory.vehicle, ahead, self.memory.observer.estimate());
+    }
+
+    /// Flies the answer of `law`: limits and sends its command, and moves on by a period.
+    #[inline(always)]
+    pub(crate) fn accept<L: Law<T>>(&mut self, law: &mut L) -> Command<T> {
+        let Solution { command, u_zeta, margins, .. } = law.solution();
+        let applied = self.commit(*command, *u_zeta, margins.q3 * margins.q_b3);
+        law.accept(self.memory.period, self.memory.is_saturated);
+        applied
+    }
+
     /// Starts from a stated ζ; until the first command the thrust is (9) and the torque zero.
-    pub(crate) fn start(&mut self, state: &State<T>, zeta: [T; 4]) {
-        let thrust = lift(&self.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.vehicle);
+    pub(crate) fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
+        state.check().map_err(Refused::State)?;
+        if !zeta.iter().all(|z| z.is_finite()) {
+            return Err(Refused::Zeta);
+        }
+        let thrust = lift(&self.memory.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.memory.vehicle);
         // At a singularity (9) says nothing, and what can't be applied was not.
-        let thrust = if thrust.is_finite() { thrust } else { self.vehicle.hover_thrust() };
-        let applied = self.actuation.apply(&Command { thrust, torque: Vector3::zeros() });
+        let thrust = if thrust.is_finite() { thrust } else { self.memory.vehicle.hover_thrust() };
+        let applied = self.actuation.apply(&Command::of_thrust(thrust));
         self.reset(state, applied);
-        self.zeta = zeta;
-        self.u_zeta = T::zero();
-        self.is_softening = false;
-        self.bump = Command::zero();
+        self.memory.zeta = zeta;
+        self.memory.u_zeta = T::zero();
+        self.memory.is_softening = false;
+        self.memory.bump = Command::zero();
+        Ok(())
     }
 
     /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
-    pub(crate) fn take_over(&mut self, state: &State<T>, applied: Command<T>) {
+    pub(crate) fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
+        state.check().map_err(Refused::State)?;
+        if !applied.is_finite() {
+            return Err(Refused::Applied);
+        }
+        self.stand(state, applied);
+        Ok(())
+    }
+
+    /// The same on a good state, with what the actuators apply.
+    pub(crate) fn stand(&mut self, state: &State<T>, applied: Command<T>) {
         self.reset(state, applied);
         self.carry_on(state);
     }
@@ -191,21 +198,21 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Continues what is being applied, with the ζ that does. The first command's step against it fades.
     #[inline(never)]
     pub(crate) fn carry_on(&mut self, state: &State<T>) {
-        let thrust = self.actuators.applied().thrust;
-        self.zeta = continuing(&self.vehicle, state, thrust, self.observer.estimate());
-        self.u_zeta = T::zero();
+        let thrust = self.memory.actuators.applied().thrust;
+        self.memory.zeta = continuing(&self.memory.vehicle, state, thrust, self.memory.observer.estimate());
+        self.memory.u_zeta = T::zero();
         self.soften();
     }
 
     /// Has the next command's step against what is being applied fade.
     pub(crate) fn soften(&mut self) {
-        self.is_softening = true;
+        self.memory.is_softening = true;
     }
 
     /// Lets a period pass without a usable state: the last command goes on.
     pub(crate) fn coast(&mut self) -> Command<T> {
-        self.zeta = propagate(&self.zeta, self.u_zeta, self.period);
-        let last = self.actuators.sent(0);
+        self.memory.zeta = propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.period);
+        let last = self.memory.actuators.sent(0);
         self.send(&last)
     }
 
@@ -213,98 +220,93 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[inline(never)]
     pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
         let applied = self.actuation.apply(command);
-        self.actuators.push(applied);
+        self.memory.actuators.push(applied);
         applied
     }
 
     /// What acts up to this sample, as far as is known.
-    pub(crate) fn applied(&self) -> &Command<T> {
-        self.actuators.applied()
+    pub fn applied(&self) -> &Command<T> {
+        self.memory.actuators.applied()
     }
 
-    pub(crate) fn actuation(&self) -> &A {
+    /// What turns commands into thrust and torque.
+    pub fn actuation(&self) -> &A {
         &self.actuation
-    }
-
-    /// The last command's thrust was not what the actuators could apply.
-    pub(crate) fn is_saturated(&self) -> bool {
-        self.is_saturated
     }
 
     /// After periods without a usable state: the observers start from `state`, with their estimates.
     pub(crate) fn resume(&mut self, state: &State<T>) {
-        self.observer.restart(state);
+        self.memory.observer.restart(state);
     }
 
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
-        self.actuators.reset(applied);
-        self.observer.reset(state);
+        self.memory.actuators.reset(applied);
+        self.memory.observer.reset(state);
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
     #[inline]
     pub(crate) fn sample(&mut self, sampled: &State<T>) -> Ahead<T> {
-        let (dt, observer, actuators) = (self.horizon, &mut self.observer, &self.actuators);
+        let (dt, observer, actuators) = (self.memory.horizon, &mut self.memory.observer, &self.memory.actuators);
         let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
         let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
-        let model = Model::at(&self.vehicle, sampled);
+        let model = Model::at(&self.memory.vehicle, sampled);
 
-        let (left, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
-        observer.correct_payload(velocity, &(left + per_newton * step.thrust), &left);
-        let (position, velocity) = advance(position, velocity, &(left + per_newton * drift.thrust), dt);
+        let (after, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
+        observer.correct_payload(velocity, &(after + per_newton * step.thrust), &after);
+        let (position, velocity) = advance(position, velocity, &(after + per_newton * drift.thrust), dt);
 
-        let (left, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
-        observer.correct_rod(rod, rod_rate, &(left + per_newton * step.thrust), &left);
-        let (rod, rod_rate) = across(advance(rod, rod_rate, &(left + per_newton * drift.thrust), dt));
+        let (after, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
+        observer.correct_rod(rod, rod_rate, &(after + per_newton * step.thrust), &after);
+        let (rod, rod_rate) = across(advance(rod, rod_rate, &(after + per_newton * drift.thrust), dt));
 
-        let (left, per_newton_metre) = model.body(&applied.torque, &observer.estimate().torque);
-        observer.correct_body(body_rate, &(left + per_newton_metre.component_mul(&step.torque)), &left);
-        let mean = left + per_newton_metre.component_mul(&drift.torque);
+        let (after, per_newton_metre) = model.body(&applied.torque, &observer.estimate().torque);
+        observer.correct_body(body_rate, &(after + per_newton_metre.component_mul(&step.torque)), &after);
+        let mean = after + per_newton_metre.component_mul(&drift.torque);
         let (attitude, body_rate) = turn(attitude, body_rate, &mean, dt);
 
         let state = State { position, velocity, rod, rod_rate, attitude, body_rate };
-        Ahead { state, zeta: propagate(&self.zeta, self.u_zeta, self.half_hold) }
+        Ahead { state, horizon: dt, zeta: propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.half_hold) }
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
     ///
-    /// Where the limit changes the thrust, ζ1 moves by what (9) makes of the difference with `alignment` = (q·e3)(q·b3), so that the compensator stands for the motion
-    /// that the applied thrust gives.
+    /// If the limit changed the thrust, ζ1 is corrected by (9) so that it is the vertical acceleration under the thrust actually
+    /// applied. `alignment` = (q·e3)(q·b3).
     #[inline(never)]
     pub(crate) fn commit(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
-        if self.is_softening {
-            self.is_softening = false;
-            self.bump = self.actuators.applied().minus(&command);
+        if self.memory.is_softening {
+            self.memory.is_softening = false;
+            self.memory.bump = self.memory.actuators.applied().minus(&command);
         }
-        let smooth = command.plus(&self.bump);
-        self.bump = self.bump.times(self.fade);
+        let smooth = command.plus(&self.memory.bump);
+        self.memory.bump = self.memory.bump.times(self.memory.fade);
         let applied = self.send(&smooth);
-        self.is_saturated = applied.thrust != smooth.thrust;
-        self.zeta = propagate(&self.zeta, u_zeta, self.period);
+        self.memory.is_saturated = applied.thrust != smooth.thrust;
+        self.memory.zeta = propagate(&self.memory.zeta, u_zeta, self.memory.period);
         let missing = command.thrust - applied.thrust;
-        self.zeta[0] += missing * alignment * self.vehicle.per_total_mass();
-        self.u_zeta = u_zeta;
+        self.memory.zeta[0] += missing * alignment * self.memory.vehicle.per_total_mass();
+        self.memory.u_zeta = u_zeta;
         applied
     }
 
-    /// ζ when the next command begins to act.
-    pub(crate) fn zeta(&self) -> &[T; 4] {
-        &self.zeta
+    /// ζ when the next command begins to act (the next sample, without latency and lag).
+    pub fn zeta(&self) -> &[T; 4] {
+        &self.memory.zeta
     }
 
-    pub(crate) fn disturbance(&self) -> &Disturbance<T> {
-        self.observer.estimate()
+    /// The disturbances found up to the last sample.
+    pub fn disturbance(&self) -> &Disturbance<T> {
+        self.memory.observer.estimate()
     }
 
-    pub(crate) fn vehicle(&self) -> &Vehicle<T> {
-        &self.vehicle
+    /// The vehicle as the law knows it.
+    pub fn vehicle(&self) -> &Vehicle<T> {
+        &self.memory.vehicle
     }
 
-    pub(crate) fn period(&self) -> T {
-        self.period
-    }
-
-    pub(crate) fn horizon(&self) -> T {
-        self.horizon
+    /// The control period, s.
+    pub fn period(&self) -> T {
+        self.memory.period
     }
 }

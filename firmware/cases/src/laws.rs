@@ -1,10 +1,9 @@
 //! The laws as they fly, set up once and put into random states.
 
-use controller::path::Path;
 use controller::{
-    ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follower, Gains, Matrix3, ObserverParams, Output, Pole,
-    Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi, Tracker, Vector3,
-    Vehicle, VehicleParams, place,
+    ActuatorLimits, ApproachLimits, Command, EnvelopeParams, Follow, Follower, Gains, Matrix3, ObserverParams,
+    Output, Path, Policy, Real, Reference, Request, Sampling, Solution, State, Supervisor, TrackGains, TrackXi,
+    Tracker, Vector3, Vehicle, VehicleParams,
 };
 
 use crate::paths::on_circle;
@@ -12,15 +11,14 @@ use crate::{Case, Digest, Random};
 
 /// Control period, s.
 const PERIOD: f32 = 0.002;
-/// Spread poles, 1/s: the ones to fly with. Chains of 6, 5 and 2.
-const POLES: [f32; 6] = [-1.0, -2.0, -3.0, -4.0, -5.0, -6.0];
-const YAW_POLES: [f32; 2] = [-2.0, -3.0];
+/// Scale of the spread poles, 1/s: the ones to fly with.
+const BANDWIDTH: f32 = 1.0;
 /// Of h1, h2, h3: far below what those poles allow.
 const INTEGRAL: [f32; 3] = [100.0, 100.0, 10.0];
 
 /// A supervised path-following law as it flies, observers, guard and limits on, and where its states are drawn.
 pub struct Following<P> {
-    supervisor: Supervisor<f32, P>,
+    supervisor: Supervisor<f32, Follow<f32, P>>,
     /// Draws a point of the path.
     on_path: fn(&mut Random) -> Vector3<f32>,
     /// On the way to the path rather than on it.
@@ -30,24 +28,15 @@ pub struct Following<P> {
 impl<P: Path<f32>> Following<P> {
     /// The paper's vehicle on `path`. `None` if a parameter is refused.
     pub fn new(path: P, on_path: fn(&mut Random) -> Vector3<f32>) -> Option<Self> {
-        let k = place(&POLES.map(Pole::Real)).ok()?;
-        let [slowest @ .., _] = POLES;
-        let gains = Gains {
-            k1: k,
-            k2: k,
-            k3: place(&slowest.map(Pole::Real)).ok()?,
-            k4: place(&YAW_POLES.map(Pole::Real)).ok()?,
-            integral: INTEGRAL,
-        };
+        let gains = Gains { integral: INTEGRAL, ..Gains::spread(BANDWIDTH).ok()? };
         let vehicle = Vehicle::new(VehicleParams::paper()).ok()?;
         let limits = ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] };
         let follower = Follower::new(vehicle, path, gains, Sampling::every(PERIOD))
             .and_then(|follower| follower.with_limits(limits))
-            .and_then(|follower| follower.with_observer(&ObserverParams::with_bandwidth(4.0)))
+            .and_then(|follower| follower.with_observer(ObserverParams::with_bandwidth(4.0)))
             .ok()?;
-        let approach = ApproachLimits::gentle(&vehicle);
-        let envelope = EnvelopeParams::wide(&vehicle);
-        let supervisor = Supervisor::new(follower, &envelope, approach, Policy::default()).ok()?;
+        let (envelope, approach) = (EnvelopeParams::wide(), ApproachLimits::gentle());
+        let supervisor = Supervisor::new(follower, envelope, approach, Policy::default()).ok()?;
         Some(Self { supervisor, on_path, joining: false })
     }
 
@@ -65,18 +54,19 @@ impl<P: Path<f32>> Case for Following<P> {
         let state = state_near((self.on_path)(random), random);
         let zeta = zeta(random);
         if self.joining {
-            let hover =
-                Command { thrust: self.supervisor.follower().vehicle().hover_thrust(), torque: Vector3::zeros() };
-            self.supervisor.take_over(&state, hover);
-            self.supervisor.step(&state, Request::Follow);
+            let hover = Command::of_thrust(self.supervisor.sampler().vehicle().hover_thrust());
+            let taken_over = self.supervisor.take_over(&state, hover);
+            debug_assert!(taken_over.is_ok(), "{taken_over:?}");
+            self.supervisor.step(Some(&state), Request::Follow);
         } else {
-            self.supervisor.start(&state, zeta);
+            let started = self.supervisor.start(&state, zeta);
+            debug_assert!(started.is_ok(), "{started:?}");
         }
         state
     }
 
     fn step(&mut self, state: &State<f32>) -> Self::Output {
-        self.supervisor.step(state, Request::Follow)
+        self.supervisor.step(Some(state), Request::Follow)
     }
 
     fn digest(&self, output: &Self::Output, digest: &mut Digest) {
@@ -93,8 +83,7 @@ pub struct Tracking(Tracker<f32>);
 impl Tracking {
     /// The paper's vehicle. `None` if a parameter is refused.
     pub fn new() -> Option<Self> {
-        let k = place(&POLES.map(Pole::Real)).ok()?;
-        let gains = TrackGains { position: [k; 3], yaw: place(&YAW_POLES.map(Pole::Real)).ok()? };
+        let gains = TrackGains::spread(BANDWIDTH).ok()?;
         let vehicle = Vehicle::new(VehicleParams::paper()).ok()?;
         Some(Self(Tracker::new(vehicle, gains, Sampling::every(PERIOD)).ok()?))
     }
@@ -107,13 +96,14 @@ impl Case for Tracking {
 
     fn prepare(&mut self, random: &mut Random) -> Self::State {
         let state = state_near(on_circle(random), random);
-        self.0.start(&state, zeta(random));
+        let started = self.0.start(&state, zeta(random));
+        debug_assert!(started.is_ok(), "{started:?}");
         // A minute and a half of flight at 1 rad/s.
         (state, 45.0 + random.around_zero(45.0))
     }
 
     fn step(&mut self, (state, phase): &Self::State) -> Self::Output {
-        self.0.step(state, &Reference::circle(5.0, -10.0, 1.0, *phase))
+        self.0.track(state, &Reference::circle(5.0, -10.0, 1.0, *phase))
     }
 
     fn digest(&self, output: &Self::Output, digest: &mut Digest) {

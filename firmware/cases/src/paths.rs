@@ -2,10 +2,9 @@
 
 use core::f32::consts::PI;
 
-use controller::path::{
-    AlongTangent, Bent, Circle, ConstantSpeed, Ellipse, Formula, FourierPath, Harmonics, Linear, Path, Profiled,
+use controller::{
+    AlongTangent, Bent, Circle, Curve, Ellipse, Formula, FourierPath, Harmonics, Linear, Path, Real, Vector3,
 };
-use controller::{Real, Vector3};
 
 use crate::Random;
 
@@ -21,26 +20,24 @@ const SPEED_CHANGE: f32 = 0.5;
 
 /// The paper's circle, yaw 0.
 pub fn circle() -> Option<impl Path<f32>> {
-    Some(Circle::new(A, P3).ok()?.at_speed(1.0))
+    Circle::new(A, P3).ok()?.at_speed(1.0).ok()
 }
 
 /// The tilted ellipse, yaw along it.
 pub fn ellipse() -> Option<impl Path<f32>> {
-    let curve = Ellipse::new(A, B, P3, SLOPE).ok()?;
-    Some(Profiled { curve, speed: ConstantSpeed(SPEED), yaw: AlongTangent })
+    Some(Ellipse::new(A, B, P3, SLOPE).ok()?.at_speed(SPEED).ok()?.with_yaw(AlongTangent))
 }
 
 /// The bent curve, speed and yaw changing with p1.
 pub fn bent() -> Option<impl Path<f32>> {
-    let along_p1 = |value, slope| Formula(Linear { value, gradient: Vector3::new(slope, 0.0, 0.0) });
-    let curve = Bent::new(A, B, P3).ok()?;
-    Some(Profiled { curve, speed: along_p1(SPEED, SPEED_CHANGE / A), yaw: along_p1(0.0, 0.2) })
+    let along_p1 = |value, slope| Linear::new(value, Vector3::new(slope, 0.0, 0.0)).ok().map(Formula);
+    let (speed, yaw) = (along_p1(SPEED, SPEED_CHANGE / A)?, along_p1(0.0, 0.2)?);
+    Some(Bent::new(A, B, P3).ok()?.with_speed(speed).with_yaw(yaw))
 }
 
 /// A knotted loop of eight harmonics, yaw along it.
 pub fn fourier8() -> Option<impl Path<f32>> {
-    let curve = FourierPath::new(KNOT).ok()?;
-    Some(Profiled { curve, speed: ConstantSpeed(SPEED), yaw: AlongTangent })
+    Some(FourierPath::new(KNOT).ok()?.at_speed(SPEED).ok()?.with_yaw(AlongTangent))
 }
 
 /// Eight harmonics that fall off as a fitted loop's do.

@@ -6,10 +6,12 @@ use controller::Fault;
 #[must_use]
 pub fn describe(fault: Fault) -> String {
     match fault {
+        Fault::NoState => "no state".to_owned(),
         Fault::State(channel) => format!("state: {channel:?}").to_lowercase(),
         Fault::Margin(margin) => format!("margin: {margin:?}"),
         Fault::NotFinite => "answer not finite".to_owned(),
         Fault::NoPath => "no path".to_owned(),
         Fault::PayloadLost => "payload lost".to_owned(),
+        other => format!("{other:?}").to_lowercase(),
     }
 }

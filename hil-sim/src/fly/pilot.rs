@@ -1,7 +1,8 @@
 //! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
 
-use controller::flight::envelope::Margins;
-use controller::{Command, Disturbance, Fault, Follower, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle};
+use controller::{
+    Command, Disturbance, Fault, Follower, Margins, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle,
+};
 
 use crate::describe::course::{ReferenceSpec, Route};
 use crate::describe::scenario::{ControllerSpec, Law};
@@ -96,11 +97,11 @@ impl<T: Real> Pilot<T> {
         Ok(match &spec.law {
             Law::Follow { path, gains } => {
                 let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?;
-                Self::Follow(Box::new(follower.with_observer(&observer)?.with_limits(limits)?))
+                Self::Follow(Box::new(follower.with_observer(observer)?.with_limits(limits)?))
             }
             Law::Track { reference, gains } => {
                 let tracker = Tracker::new(vehicle, gains.cast(), sampling)?;
-                Self::Track(Box::new(tracker.with_observer(&observer)?.with_limits(limits)?), *reference)
+                Self::Track(Box::new(tracker.with_observer(observer)?.with_limits(limits)?), *reference)
             }
         })
     }
@@ -110,7 +111,7 @@ impl<T: Real> Pilot<T> {
     pub fn decide(&mut self, state: &State<f64>, t_s: f64) -> Decision {
         let state = state.cast();
         let (zeta, integral) = match self {
-            Self::Follow(follower) => (*follower.zeta(), *follower.integral()),
+            Self::Follow(follower) => (*follower.zeta(), *follower.law().integral()),
             Self::Track(tracker, _) => (*tracker.zeta(), [T::zero(); 3]),
         };
         let (command, xi, nu, margins, found, vehicle) = match self {
@@ -120,7 +121,7 @@ impl<T: Real> Pilot<T> {
                 (solution.command, xi, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
             }
             Self::Track(tracker, reference) => {
-                let solution = tracker.step(&state, &reference.at(t_s));
+                let solution = tracker.track(&state, &reference.at(t_s));
                 let [p1, p2, p3] = &solution.xi.position;
                 let xi = padded([p1, p2, p3, &solution.xi.yaw]);
                 (solution.command, xi, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
@@ -155,17 +156,19 @@ pub(crate) fn padded<T: Real>(parts: [&[T]; 4]) -> [f64; 20] {
 impl<T: Real> Answers for Pilot<T> {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
         let (state, zeta) = (state.cast(), zeta.map(T::lit));
-        match self {
+        // A refused state leaves the law as it was, which the flight then shows.
+        let _ = match self {
             Self::Follow(follower) => follower.start(&state, zeta),
             Self::Track(tracker, _) => tracker.start(&state, zeta),
-        }
+        };
     }
 
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        match self {
+        // A refused state leaves the law as it was, which the flight then shows.
+        let _ = match self {
             Self::Follow(follower) => follower.take_over(&state.cast(), applied.cast()),
             Self::Track(tracker, _) => tracker.take_over(&state.cast(), applied.cast()),
-        }
+        };
     }
 
     #[inline]

@@ -3,8 +3,7 @@
 use std::time::{Duration, Instant};
 
 use autopilot::{Setting, Settings};
-use controller::flight::envelope::Margins;
-use controller::{Command, Mode, State, Vector3};
+use controller::{Command, Margins, Mode, State, Vector3};
 use link::MavMessage;
 use link::dialect::*;
 use rig::{Refused, parameter, run};

@@ -3,12 +3,7 @@
 //! The state is taken as it is, without prediction. `"f32"` and `"f64"` are the controller's source in either scalar; the
 //! state is converted from the paper's coordinates in f64, then rounded. `"witness"` is the law by Lie derivatives.
 
-use controller::Disturbance;
-use controller::flight::envelope::Margins;
-use controller::{
-    Gains, Path, Real, State, TrackGains, Vehicle, VehicleParams,
-    law::{follow, track},
-};
+use controller::{Disturbance, Gains, Margins, Path, Real, State, TrackGains, Vehicle, VehicleParams, follow, track};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -204,7 +199,7 @@ impl Point {
         let mut path = path.build::<T>().map_err(|error| Invalid::out_of_range("path", error))?;
         let state = self.state();
         path.search(&state.position);
-        let solution = follow::law(
+        let solution = follow(
             &self.vehicle()?,
             &mut path,
             &gains.cast(),
@@ -223,7 +218,7 @@ impl Point {
         time: f64,
         gains: &TrackGains<f64>,
     ) -> Result<Answer, Invalid> {
-        let solution = track::law(
+        let solution = track(
             &self.vehicle()?,
             &gains.cast(),
             &reference.at(time),

@@ -1,7 +1,6 @@
 //! Curves as described by a user: any of the controller's by its numbers, a Fourier series, or formulas.
 
-use controller::path::{Formula as Formulas, FourierPath, Harmonics, Implicit};
-use controller::{Analytic, OutOfRange, Real};
+use controller::{Analytic, Formula as Formulas, FourierPath, Harmonics, Implicit, OutOfRange, Real};
 use rig::{AnyCurve, Parameter, Parameters, Shape};
 
 use crate::describe::formula::Formula;

@@ -1,6 +1,6 @@
 //! The fields of a path's description, and their way into a validated [`PathSpec`].
 
-use controller::path::Harmonics;
+use controller::Harmonics;
 use rig::{Field, Parameters, Shape, parameter};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny};
@@ -11,9 +11,9 @@ use crate::describe::formula::{Constants, Formula};
 use crate::describe::input::{Invalid, all_within, join, read, within};
 
 /// Largest speed along a path, m/s.
-pub(crate) const SPEED_LIMIT: f64 = 1e3;
+pub(crate) const SPEED_LIMIT: f64 = controller::ranges::SPEED.max;
 /// Largest yaw given as a number, rad: any representative of an angle, but no mistake.
-const YAW_LIMIT: f64 = 100.0;
+const YAW_LIMIT: f64 = controller::ranges::YAW.max;
 
 /// The fields that every kind of path has.
 #[derive(Deserialize)]

@@ -20,7 +20,7 @@ pub use curve::{CurveSpec, HARMONICS, Surfaces};
 pub use fields::parse_path;
 pub use profile::{SpeedSpec, YawSpec};
 
-use controller::path::Profiled;
+use controller::Profiled;
 use controller::{OutOfRange, Path, Real, Vector3, Vehicle};
 use rig::{AnyPath, Shape, parameter};
 use std::sync::OnceLock;
@@ -68,7 +68,7 @@ impl PathSpec {
     /// # Errors
     /// [`OutOfRange`] if rounding to `T` takes a parameter out of range.
     pub fn build<T: Real>(&self) -> Result<Route<T>, OutOfRange<T>> {
-        Ok(Profiled { curve: self.curve.build()?, speed: self.speed.build()?, yaw: self.yaw.build() })
+        Ok(Profiled { curve: self.curve.build()?, speed: self.speed.build()?, yaw: self.yaw.build()? })
     }
 
     /// Radius (m), p3 (m) and speed (m/s along ρ) of the paper's circle at constant speed.

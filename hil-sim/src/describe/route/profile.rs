@@ -1,6 +1,6 @@
 //! Speeds and yaws as described by a user.
 
-use controller::path::{
+use controller::{
     AlongTangent, ConstantSpeed, CurvatureLimited, FixedYaw, Formula as OfPosition, PointingAt, ScalarField,
 };
 use controller::{Analytic, OutOfRange, Real};
@@ -49,7 +49,7 @@ impl<T: Real> ScalarField<T> for Formula {
 impl SpeedSpec {
     pub(super) fn build<T: Real>(&self) -> Result<AnySpeed<T, Formula>, OutOfRange<T>> {
         Ok(match self {
-            Self::Constant(speed) => AnySpeed::Constant(ConstantSpeed(T::lit(*speed))),
+            Self::Constant(speed) => AnySpeed::Constant(ConstantSpeed::new(T::lit(*speed))?),
             Self::Formula(formula) => AnySpeed::Formula(OfPosition(formula.clone())),
             Self::CurvatureLimited { max, acceleration } => {
                 AnySpeed::CurvatureLimited(CurvatureLimited::new(T::lit(*max), T::lit(*acceleration))?)
@@ -59,14 +59,14 @@ impl SpeedSpec {
 }
 
 impl YawSpec {
-    pub(super) fn build<T: Real>(&self) -> AnyYaw<T, Formula> {
-        match self {
-            Self::Fixed(yaw) => AnyYaw::Fixed(FixedYaw(T::lit(*yaw))),
+    pub(super) fn build<T: Real>(&self) -> Result<AnyYaw<T, Formula>, OutOfRange<T>> {
+        Ok(match self {
+            Self::Fixed(yaw) => AnyYaw::Fixed(FixedYaw::new(T::lit(*yaw))?),
             Self::Tangent => AnyYaw::Tangent(AlongTangent),
             Self::Formula(formula) => AnyYaw::Formula(OfPosition(formula.clone())),
             Self::PointingAt { target: [x, y] } => {
-                AnyYaw::PointingAt(OfPosition(PointingAt { x: T::lit(*x), y: T::lit(*y) }))
+                AnyYaw::PointingAt(OfPosition(PointingAt::new(T::lit(*x), T::lit(*y))?))
             }
-        }
+        })
     }
 }

@@ -1,8 +1,7 @@
 //! The same paths for the witness, by formulas that it differentiates itself.
 
 use super::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
-use controller::Vector3;
-use controller::path::Harmonics;
+use controller::{Harmonics, Vector3};
 use rig::{Parameters, Shape, parameter, run};
 use witness::jet::{Dual, Scalar, cross, dot, scale};
 use witness::law::WitnessPath;

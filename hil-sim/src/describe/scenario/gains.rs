@@ -104,7 +104,9 @@ impl Rows {
         let field = match error {
             GainError::NotHurwitz { output } => format!("{}[{}]", self.name(), output - 1),
             GainError::Integral { output, .. } => format!("controller.k_integral[{}]", output - 1),
-            GainError::PoleCount { .. } | GainError::UnstablePole { .. } => self.name().to_owned(),
+            GainError::PoleCount { .. } | GainError::UnstablePole { .. } | GainError::PoleTooFast { .. } => {
+                self.name().to_owned()
+            }
         };
         Invalid::new(field, error)
     }

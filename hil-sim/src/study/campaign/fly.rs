@@ -1,6 +1,8 @@
 //! A campaign's flight: the supervised law, and the row of the table it leaves.
 
-use controller::{ApproachLimits, Command, EnvelopeParams, Follower, Mode, Policy, Request, SetupError, State};
+use controller::{
+    ApproachLimits, Command, EnvelopeParams, Follow, Follower, Mode, Policy, Request, SetupError, State,
+};
 use controller::{Supervisor, Vehicle};
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +18,7 @@ use crate::world::Seed;
 
 /// The supervised law in f32, asked to follow its path from the first step on.
 pub struct Supervised {
-    supervisor: Supervisor<f32, Route<f32>>,
+    supervisor: Supervisor<f32, Follow<f32, Route<f32>>>,
 }
 
 impl Supervised {
@@ -29,9 +31,9 @@ impl Supervised {
         let vehicle = Vehicle::new(spec.vehicle.cast())?;
         let sampling = spec.sampling().cast();
         let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?
-            .with_observer(&spec.observer.cast())?
+            .with_observer(spec.observer.cast())?
             .with_limits(spec.limits.cast())?;
-        let gentle = ApproachLimits::gentle(&vehicle);
+        let gentle = ApproachLimits::gentle();
         let or = |given: Option<f64>, other: f32| given.map_or(other, |value| value as f32);
         let radians = |degrees: Option<f64>| degrees.map(f64::to_radians);
         let approach = ApproachLimits {
@@ -41,27 +43,28 @@ impl Supervised {
             rod_angle: or(radians(approach.rod_deg), gentle.rod_angle),
             ..gentle
         };
-        let supervisor = Supervisor::new(follower, &EnvelopeParams::wide(&vehicle), approach, Policy::default())?;
+        let supervisor = Supervisor::new(follower, EnvelopeParams::wide(), approach, Policy::default())?;
         Ok(Some(Self { supervisor }))
     }
 }
 
 impl Answers for Supervised {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        self.supervisor.start(&state.cast(), zeta.map(|z| z as f32));
+        // A refused state leaves the law as it was, which the flight then shows.
+        let _ = self.supervisor.start(&state.cast(), zeta.map(|z| z as f32));
     }
 
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        self.supervisor.take_over(&state.cast(), applied.cast());
+        // A refused state leaves the law as it was, which the flight then shows.
+        let _ = self.supervisor.take_over(&state.cast(), applied.cast());
     }
 
     #[inline]
     fn step(&mut self, state: &State<f64>, _: f64) -> Option<Decision> {
         let state = state.cast();
-        let follower = self.supervisor.follower();
-        let (zeta, integral) = (*follower.zeta(), *follower.integral());
-        let output = self.supervisor.step(&state, Request::Follow);
-        let (found, vehicle) = (self.supervisor.disturbance(), self.supervisor.follower().vehicle());
+        let (zeta, integral) = (*self.supervisor.sampler().zeta(), *self.supervisor.law().integral());
+        let output = self.supervisor.step(Some(&state), Request::Follow);
+        let (found, vehicle) = (self.supervisor.disturbance(), self.supervisor.sampler().vehicle());
         let telemetry = self.supervisor.solution().map(|solution| Telemetry {
             integral: integral.map(f64::from),
             xi: padded([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]),

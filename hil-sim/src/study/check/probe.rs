@@ -2,7 +2,7 @@
 //!
 //! Everything comes from the outputs (4) that the law itself evaluates, so what holds here holds in flight.
 
-use controller::path::Outputs;
+use controller::Outputs;
 use controller::{Path, Series, Vector3};
 
 /// Coefficients of a payload's Taylor series, as the law takes them.

@@ -1,13 +1,13 @@
 //! The vehicle's state and inputs under a payload's motion, by differential flatness: the law's own inverse.
 //!
 //! With s = p̈ − g e3 = λ q the rod is −s/|s| (the cable pulls, λ < 0); κ b3 = q̈ − c s gives thrust and b3; b3 and ψ give the
-//! attitude, ḃ3 and ψ̇ the body rate. The controller's [lift](mod@controller::law::lift) and [lower](mod@controller::law::lower) then
+//! attitude, ḃ3 and ψ̇ the body rate. The controller's [lift](controller::lift()) and [lower](controller::lower()) then
 //! give the margins and the torque.
 
 use super::probe::Motion;
 use controller::Yaw;
-use controller::law::lift::lift;
-use controller::law::lower::lower;
+use controller::lift;
+use controller::lower;
 use controller::{Analytic, Command, Disturbance, Series, State, Vector3, Vehicle};
 
 /// One instant of a motion of the payload.

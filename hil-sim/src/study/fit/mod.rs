@@ -17,7 +17,7 @@ pub use reference::LEAST_ANGLE;
 use crate::study::check::probe::{Frame, length};
 use crate::study::check::walk::walk;
 use crate::study::check::{Lap, Refusal};
-use controller::path::{ConstantSpeed, FixedYaw, FourierPath, Harmonics, Profiled};
+use controller::{Curve, FourierPath, Harmonics};
 use controller::{OutOfRange, Vector3};
 use linalg::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -192,8 +192,7 @@ fn finish(
     }
     harmonics.reference = reference.into();
 
-    let curve = FourierPath::new(harmonics)?;
-    let mut path = Profiled { curve, speed: ConstantSpeed(1.0), yaw: FixedYaw(0.0) };
+    let mut path = FourierPath::new(harmonics)?.at_speed(1.0)?;
     let lap = lap_of(&mut path, &harmonics)?;
     lap.branches()?;
 

@@ -4,8 +4,8 @@
 //! order a change of the curve moves the distance by its part across the tangent only. Changes along the curve do nothing;
 //! the damping keeps them out.
 
+use controller::Harmonics;
 use controller::Vector3;
-use controller::path::Harmonics;
 use linalg::{DMatrix, DVector};
 
 use super::MAX_HARMONICS;

@@ -84,11 +84,7 @@ pub fn rust(fit: &Fit, source: &str) -> String {
         fit.lap.length(),
         1.0 / fit.lap.sharpest().curvature()
     );
-    let _ = writeln!(
-        text,
-        "const PATH: controller::path::Harmonics<f32, {}> = controller::path::Harmonics {{",
-        fit.count
-    );
+    let _ = writeln!(text, "const PATH: controller::Harmonics<f32, {}> = controller::Harmonics {{", fit.count);
     let _ = writeln!(text, "    center: {},", row(&harmonics.center));
     for (name, rows) in [("cos", &harmonics.cos), ("sin", &harmonics.sin)] {
         let _ = writeln!(text, "    {name}: [");

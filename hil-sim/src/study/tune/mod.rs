@@ -14,7 +14,7 @@ mod report;
 
 pub use report::{table, trade};
 
-use controller::{EnvelopeParams, SetupError, Vector3, Vehicle};
+use controller::{EnvelopeParams, SetupError, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -131,7 +131,7 @@ pub fn tune(
     for (&scale, &bandwidth) in scales.iter().flat_map(|scale| bandwidths.iter().map(move |o| (scale, o))) {
         let scenario = Scenario::from_table("tune", with_settings(table, scale, bandwidth))?;
         let outline = outline(&scenario)?;
-        let envelope = envelope(&scenario)?;
+        let envelope = envelope();
         // Whatever f32 refuses is refused here.
         Pilot::<f32>::new(&scenario.controller)?;
         let flights: Option<Vec<Flown>> = (0..runs as u64)
@@ -163,11 +163,9 @@ fn outline(scenario: &Scenario) -> Result<Vec<[f64; 3]>, Invalid> {
 }
 
 /// Largest angles of rod and thrust, rad.
-fn envelope(scenario: &Scenario) -> Result<[f64; 2], Invalid> {
-    let told = Vehicle::new(scenario.controller.vehicle)
-        .map_err(|error| Invalid::out_of_range("controller.vehicle", error))?;
-    let wide = EnvelopeParams::wide(&told);
-    Ok([wide.rod_angle.limit, wide.thrust_angle.limit])
+fn envelope() -> [f64; 2] {
+    let wide = EnvelopeParams::wide();
+    [wide.rod_angle.limit, wide.thrust_angle.limit]
 }
 
 /// What is kept of a flight.

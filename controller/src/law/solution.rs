@@ -1,0 +1,43 @@
+//! A law's answer.
+
+use model::{Command, Real};
+
+use crate::law::margins::Margins;
+
+/// What a law answers: the command, and the numbers it came from as telemetry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solution<T, X> {
+    /// Thrust (9) and torque (11).
+    pub command: Command<T>,
+    /// The compensator's input, m/s⁶.
+    pub u_zeta: T,
+    /// Outputs and derivatives.
+    pub xi: X,
+    /// ν of (13), the wanted highest derivatives of the outputs.
+    pub nu: [T; 4],
+    /// Distances from the singularities.
+    pub margins: Margins<T>,
+}
+
+impl<T: Real, X: Default> Default for Solution<T, X> {
+    /// All zeros.
+    fn default() -> Self {
+        let (u_zeta, nu) = (T::zero(), [T::zero(); 4]);
+        Self { command: Command::zero(), u_zeta, xi: X::default(), nu, margins: Margins::default() }
+    }
+}
+
+impl<T: Real, X> Solution<T, X> {
+    /// Neither command nor u_ζ is infinite or NaN.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        let Command { thrust, torque } = &self.command;
+        (*thrust + torque.x + torque.y + torque.z + self.u_zeta).is_finite()
+    }
+}
+
+/// Σ aₖ bₖ.
+#[inline]
+pub(crate) fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+}
