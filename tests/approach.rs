@@ -1,7 +1,9 @@
-//! Joining from afar: 20 m off the path in any direction, moving at 3 m/s with the rod swinging at 25°, whatever the yaw.
+//! Joining from afar: 20 m off the path in any direction, moving at 3 m/s with the rod swinging at
+//! 25°, whatever the yaw.
 //!
-//! What the approach promises is checked on the plant: it keeps its limits once the swing it was given has died, it joins without overshoot,
-//! and neither thrust nor torque steps when the law takes over.
+//! What the approach promises is checked on the plant: it keeps its limits once the swing it was
+//! given has died, it joins without overshoot, and neither thrust nor torque steps when the law
+//! takes over.
 
 use controller::{
     ActuatorLimits, ApproachLimits, Circle, Command, Curve, Follower, Gains, Law, ObserverParams, Path, Sampling,
@@ -40,8 +42,8 @@ fn leaning(angle: f64, random: &mut Stream) -> Vector3<f64> {
     Vector3::new(across * turn.cos(), across * turn.sin(), angle.cos())
 }
 
-/// 20 m from the circle (it is the nearest point that is 20 m away), at 3 m/s anywhere, the rod at 25° and swinging through, tilted by up
-/// to 0.2 rad, any yaw.
+/// 20 m from the circle (it is the nearest point that is 20 m away), at 3 m/s anywhere, the rod at
+/// 25° and swinging through, tilted by up to 0.2 rad, any yaw.
 fn start(random: &mut Stream) -> State<f64> {
     let along = random.uniform(0.0, TAU);
     let elevation = random.uniform(-1.0, 1.0);
@@ -61,7 +63,8 @@ fn start(random: &mut Stream) -> State<f64> {
 struct Extremes {
     /// Angle of the rod from the vertical, rad, all the way.
     rod: f64,
-    /// After the first swing: angles of thrust and rod from the vertical, rad, speed (m/s) and thrust (N).
+    /// After the first swing: angles of thrust and rod from the vertical, rad, speed (m/s) and
+    /// thrust (N).
     calm_tilt: f64,
     calm_rod: f64,
     calm_speed: f64,

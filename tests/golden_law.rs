@@ -1,4 +1,5 @@
-//! The closed-form law against reference vectors that were computed in binary128 by differentiating the paper's equations.
+//! The closed-form law against reference vectors that were computed in binary128 by differentiating
+//! the paper's equations.
 
 use controller::{
     AlongTangent, Analytic, Bent, Circle, Curve, Disturbance, Ellipse, Formula, Gains, Implicit, Linear, OutOfRange,
@@ -33,7 +34,8 @@ impl Errors {
         self.xi.push(relative_error(xi.0, xi.1));
     }
 
-    /// Asserts the worst and the median error of ū and the worst of the torque alone, of T and of ξ.
+    /// Asserts the worst and the median error of ū and the worst of the torque alone, of T and of
+    /// ξ.
     fn assert(&self, what: &str, worst: f64, median: f64, torque: f64, outputs: f64) {
         let found = [
             ("u worst", Self::worst(&self.inputs), worst),
@@ -130,13 +132,15 @@ fn track_errors<T: Real>() -> Errors {
     errors
 }
 
-/// In f64 the vectors' own rounding, up to 2.6e-12 where ū nearly cancels, is not met: the closed form loses less.
+/// In f64 the vectors' own rounding, up to 2.6e-12 where ū nearly cancels, is not met: the closed
+/// form loses less.
 const F64: f64 = 1e-12;
 /// In f32 the worst vectors are those in which ū nearly cancels; unit roundoff is 6e-8.
 const F32_WORST: f64 = 4e-5;
 const F32_MEDIAN: f64 = 3e-7;
 const F32_TORQUE: f64 = 4e-6;
-/// The curves whose tangent is normalized divide twice more, by formula with gradients of their own rounding.
+/// The curves whose tangent is normalized divide twice more, by formula with gradients of their own
+/// rounding.
 const F32_TORQUE_NORMALIZED: f64 = 6e-6;
 /// T and ξ in f32: a few tens of roundings of numbers that do not cancel.
 const F32_OUTPUTS: f64 = 2e-6;

@@ -1,5 +1,6 @@
-//! Lift and lower against the flow they speak of: every derivative the lift states is the rate of the one before it, and the torque that lower
-//! gives makes the sixth what was asked for. With disturbances that grow.
+//! Lift and lower against the flow they speak of: every derivative the lift states is the rate of
+//! the one before it, and the torque that lower gives makes the sixth what was asked for. With
+//! disturbances that grow.
 
 use controller::Disturbance;
 use controller::Yaw;
@@ -10,7 +11,8 @@ use controller::{Command, Matrix3, State, Vector3, Vehicle, VehicleParams};
 use controller::{Lift, lift};
 use proptest::prelude::*;
 
-/// Half the central difference's step, s: its square times the next derivatives is as small as what rounding leaves over the step.
+/// Half the central difference's step, s: its square times the next derivatives is as small as what
+/// rounding leaves over the step.
 const STEP_S: f64 = 1e-5;
 /// Of the larger of 1 and the sixth derivative asked for.
 const BOUND: f64 = 1e-5;

@@ -1,5 +1,5 @@
-//! What the disturbance observers find, and what they cost: the f32 law at 500 Hz on the circle of 5 m at 1 m/s, on a plant that differs
-//! from what the law is told.
+//! What the disturbance observers find, and what they cost: the f32 law at 500 Hz on the circle of
+//! 5 m at 1 m/s, on a plant that differs from what the law is told.
 
 use controller::Disturbance;
 use controller::{

@@ -1,5 +1,5 @@
-//! Every curve and profile: its series against itself at other times, its gradients, its geometry in closed form, and the
-//! Fourier path's nearest point against a search in double precision.
+//! Every curve and profile: its series against itself at other times, its gradients, its geometry
+//! in closed form, and the Fourier path's nearest point against a search in double precision.
 
 use controller::{
     AlongTangent, Bent, CurvatureLimited, Curve, Curved, Ellipse, FixedYaw, Formula, FourierPath, Harmonics,
@@ -20,7 +20,8 @@ fn unit(v: &Vector3<f64>) -> Vector3<f64> {
 /// p(t) by its Taylor coefficients, orders 0 to 5.
 type Motion = [Vector3<f64>; 6];
 
-/// A motion about a point near the flat curves of half-axes 5 m and 4 m, 10 m up: metres, metres a second, and so on.
+/// A motion about a point near the flat curves of half-axes 5 m and 4 m, 10 m up: metres, metres a
+/// second, and so on.
 const MOTION: Motion = [
     Vector3::new(3.1, 2.9, -9.6),
     Vector3::new(-1.1, 0.8, 0.3),
@@ -53,8 +54,8 @@ fn evaluate<const N: usize>(series: &Series<f64, N>, t: f64) -> f64 {
     series.0.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// A Taylor polynomial of N coefficients misses the function at t by O(tᴺ), so a halved t by 2⁻ᴺ of that: a wrong coefficient of
-/// order k < N shows as 2⁻ᵏ.
+/// A Taylor polynomial of N coefficients misses the function at t by O(tᴺ), so a halved t by 2⁻ᴺ
+/// of that: a wrong coefficient of order k < N shows as 2⁻ᵏ.
 fn assert_order<const N: usize>(what: &str, polynomial: &Series<f64, N>, exact: impl Fn(f64) -> f64) {
     // Rounding of some hundred operations on numbers up to the values' size.
     let noise = 3e-14 * polynomial.0.iter().fold(1.0, |sum: f64, c| sum.max(c.abs()));
@@ -68,7 +69,8 @@ fn assert_order<const N: usize>(what: &str, polynomial: &Series<f64, N>, exact: 
     assert!(whole < 1e-2, "{what}: remainder {whole:e}");
 }
 
-/// All outputs of a path, as series, against their values at other times; and the gradients against the surfaces.
+/// All outputs of a path, as series, against their values at other times; and the gradients against
+/// the surfaces.
 fn check_series(name: &str, path: &mut dyn Path<f64>) {
     let [start, ..] = MOTION;
     path.search(&start);
@@ -198,7 +200,8 @@ fn curves_are_the_zeros_they_state() {
     Written(written).assert_values("tilted", &mut tilted());
 }
 
-/// Curvature and direction of one ellipse at its vertices, κ = a/b² and b/a², however the ellipse is given.
+/// Curvature and direction of one ellipse at its vertices, κ = a/b² and b/a², however the ellipse
+/// is given.
 fn check_ellipse(name: &str, curve: &mut impl Curved<f64>, forward: bool) {
     let (a, b) = (5.0, 4.0);
     let at_vertex = [
@@ -301,7 +304,8 @@ fn parameters_out_of_range_are_refused() {
 /// Harmonics of the curves below.
 const K: usize = 8;
 
-/// A closed curve as a plain sum, in double precision: shares nothing with the path under test but its numbers.
+/// A closed curve as a plain sum, in double precision: shares nothing with the path under test but
+/// its numbers.
 struct Sum(Harmonics<f32, K>);
 
 impl Sum {
@@ -320,7 +324,8 @@ impl Sum {
         sums
     }
 
-    /// Federer's formula for the reach, inf |y − x|²/(2 dist(y − x, T_x)), over all pairs of `count` points.
+    /// Federer's formula for the reach, inf |y − x|²/(2 dist(y − x, T_x)), over all pairs of
+    /// `count` points.
     fn reach(&self, count: usize) -> f64 {
         let points: Vec<_> = (0..count).map(|i| self.at(std::f64::consts::TAU * i as f64 / count as f64)).collect();
         let mut reach = f64::INFINITY;
@@ -337,7 +342,8 @@ impl Sum {
         reach
     }
 
-    /// The nearest point to `p`, and how far it is: a fine search and Newton's iteration to its end.
+    /// The nearest point to `p`, and how far it is: a fine search and Newton's iteration to its
+    /// end.
     fn nearest(&self, p: &Vector3<f64>) -> (Vector3<f64>, f64) {
         let samples = 1000;
         let distance = |sigma: f64| length(&(p - self.at(sigma)[0]));
@@ -376,8 +382,8 @@ const NEAREST: f64 = 1e-5;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Flown round the loop at the edge of 0.8 of the reach in f32, winding about it, the nearest point found by the bounded
-    /// iteration is the f64 search's, and h is the distance to it.
+    /// Flown round the loop at the edge of 0.8 of the reach in f32, winding about it, the nearest
+    /// point found by the bounded iteration is the f64 search's, and h is the distance to it.
     #[test]
     fn nearest_point_within_the_reach(harmonics in harmonics(), winding in 1_i32..6, phase in 0.0..6.0_f64) {
         let sum = Sum(harmonics);

@@ -1,4 +1,5 @@
-//! Closed loops in continuous time: the f64 law on the plant, integrated adaptively, against the reference trajectories.
+//! Closed loops in continuous time: the f64 law on the plant, integrated adaptively, against the
+//! reference trajectories.
 
 use controller::{
     Command, Disturbance, Gains, Path, Reference, State, TrackGains, Vehicle, VehicleParams, follow, track,
@@ -12,8 +13,9 @@ use witness::plant::{Input, VehicleParameters, derivative};
 /// The plant's 16 coordinates, ζ, ξ̃.
 type Loop = [f64; 23];
 
-/// Allowed difference, of a coordinate of x relative to 1 or to its own size: the reference is integrated to a relative
-/// tolerance of 1e-9 a step, and the swing's transient may add some of them up.
+/// Allowed difference, of a coordinate of x relative to 1 or to its own size: the reference is
+/// integrated to a relative tolerance of 1e-9 a step, and the swing's transient may add some of
+/// them up.
 const BOUND: f64 = 1e-8;
 
 /// A thousand times below the bound.

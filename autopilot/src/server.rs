@@ -44,7 +44,8 @@ impl Server {
         Self { bad_frames: 0, reported: (Mode::Off, None), listing: None }
     }
 
-    /// What the controller says when it has started: it speaks first, since bytes sent to it before are lost.
+    /// What the controller says when it has started: it speaks first, since bytes sent to it before
+    /// are lost.
     pub fn greet(&self, autopilot: &Autopilot, send: &mut impl FnMut(MavMessage)) {
         send(Self::heartbeat(autopilot));
         let boot = autopilot.boot();
@@ -92,8 +93,8 @@ impl Server {
         })
     }
 
-    /// What there is to say unasked: another mode or fault, or the next parameter of a list. One message a call, since
-    /// a whole list would keep the control step waiting.
+    /// A message that nobody asked for: a new mode or fault, or the next parameter of a list. One
+    /// message a call, since a whole list would keep the control step waiting.
     pub fn news(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
         if let Some(change) = self.change(autopilot) {
             return Some(change);

@@ -1,12 +1,14 @@
-//! Every parameter's range and default in one table. The constructors check against it, the constructors that take no numbers
-//! are made of its defaults, and a parameter table of named numbers can be built on it.
+//! Every parameter's range and default in one table. The constructors check against it, the
+//! constructors that take no numbers are made of its defaults, and a parameter table of named
+//! numbers can be built on it.
 
 use model::Range;
 pub use model::ranges::*;
 
 /// [`Sampling::period`](crate::Sampling::period), s.
 pub const PERIOD: Range = Range::new("period", 1e-4, 0.2, 0.002);
-/// [`Sampling::latency`](crate::Sampling::latency), s, and no more than [`MAX_DELAY`](crate::MAX_DELAY) periods.
+/// [`Sampling::latency`](crate::Sampling::latency), s, and no more than
+/// [`MAX_DELAY`](crate::MAX_DELAY) periods.
 pub const LATENCY: Range = Range::new("latency", 0.0, 0.5, 0.0);
 /// [`Sampling::rotor_lag`](crate::Sampling::rotor_lag), s.
 pub const ROTOR_LAG: Range = Range::new("rotor_lag", 0.0, 0.5, 0.0);
@@ -16,7 +18,8 @@ pub const BANDWIDTH: Range = Range::new("bandwidth", 0.05, 20.0, 1.0);
 /// Distance of a pole from zero, 1/s.
 pub const POLE: Range = Range::new("pole", 0.0, 1e3, 1.0);
 
-/// [`ObserverParams::payload_bandwidth`](crate::ObserverParams::payload_bandwidth), rad/s; 0 is off, here and below.
+/// [`ObserverParams::payload_bandwidth`](crate::ObserverParams::payload_bandwidth), rad/s; 0 is
+/// off, here and below.
 pub const PAYLOAD_BANDWIDTH: Range = Range::new("payload_bandwidth", 0.0, 100.0, 4.0);
 /// [`ObserverParams::rod_bandwidth`](crate::ObserverParams::rod_bandwidth), rad/s.
 pub const ROD_BANDWIDTH: Range = Range::new("rod_bandwidth", 0.0, 100.0, 4.0);
@@ -84,7 +87,8 @@ pub const SINK: Range = Range::new("lost", 0.0, 1.0, 0.9);
 pub const CALM: Range = Range::new("calm", 0.0, 100.0, 1.0);
 /// [`Policy::descent`](crate::Policy::descent), m/s.
 pub const DESCENT: Range = Range::new("descent", 0.01, 10.0, 0.5);
-/// [`Policy::payload_lost`](crate::Policy::payload_lost), a share of the payload's mass; negative: never.
+/// [`Policy::payload_lost`](crate::Policy::payload_lost), a share of the payload's mass; negative:
+/// never.
 pub const PAYLOAD_LOST: Range = Range::new("payload_lost", -1.0, 0.95, 0.3);
 
 /// [`ActuatorLimits::min_thrust`](crate::ActuatorLimits::min_thrust), N.
@@ -102,7 +106,8 @@ pub const MAX_TORQUE: [Range; 3] = [
 pub const THRUST_COEFFICIENT: Range = Range::new("thrust_coefficient", 1e-10, 1.0, 2e-5);
 /// [`RotorParams::torque_coefficient`](crate::RotorParams::torque_coefficient), N·m/(rad/s)².
 pub const TORQUE_COEFFICIENT: Range = Range::new("torque_coefficient", 1e-12, 1.0, 4e-7);
-/// [`RotorParams::min_speed`](crate::RotorParams::min_speed), rad/s, and no more than 0.9 of the largest.
+/// [`RotorParams::min_speed`](crate::RotorParams::min_speed), rad/s, and no more than 0.9 of the
+/// largest.
 pub const MIN_SPEED: Range = Range::new("min_speed", 0.0, 1e5, 100.0);
 /// [`RotorParams::max_speed`](crate::RotorParams::max_speed), rad/s.
 pub const MAX_SPEED: Range = Range::new("max_speed", 1.0, 1e5, 1100.0);

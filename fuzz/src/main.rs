@@ -1,5 +1,5 @@
-//! Any bytes are a flight: parameters, then steps of a request and a state each. What goes out is to be finite and within the limits, and
-//! what came in is to leave no trace.
+//! Any bytes are a flight: parameters, then steps of a request and a state each. What goes out is
+//! to be finite and within the limits, and what came in is to leave no trace.
 #![no_main]
 
 use controller::{
@@ -10,7 +10,8 @@ use libfuzzer_sys::fuzz_target;
 
 const LIMITS: ActuatorLimits<f32> = ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque: [3.0; 3] };
 
-/// Reads numbers off the input until it ends; a state's numbers are offsets from a good one where the selector says so.
+/// Reads numbers off the input until it ends; a state's numbers are offsets from a good one where
+/// the selector says so.
 struct Input<'a>(&'a [u8]);
 
 impl Input<'_> {

@@ -25,21 +25,26 @@ fn its_costs_are_the_expected_ones() {
         serde_json::from_str(include_str!("../../firmware/bench/expected.json")).expect("JSON");
     let grouped = |number: &serde_json::Value| {
         let number = number.as_u64().expect("a count");
-        format!("{},{:03}", number / 1000, number % 1000)
+        if number < 1000 { number.to_string() } else { format!("{},{:03}", number / 1000, number % 1000) }
     };
     let count = |case: &str, end: &str| grouped(&expected["instructions"][case][end]);
     let bytes = |case: &str| grouped(&expected["code_bytes_by_case"][case]);
     for (case, row) in [
-        ("circle", "| circle |"),
-        ("ellipse", "| ellipse, yaw along it |"),
-        ("bent", "| bent curve, speed and yaw of position |"),
-        ("fourier8", "| Fourier loop of 8 harmonics |"),
+        ("circle", "| whole step, circle |"),
+        ("ellipse", "| whole step, ellipse, yaw along it |"),
+        ("bent", "| whole step, bent curve, speed and yaw of position |"),
+        ("fourier8", "| whole step, Fourier loop of 8 harmonics |"),
     ] {
         let shown = format!("{row} {} to {} | {} B |", count(case, "best"), count(case, "worst"), bytes(case));
         assert!(README.contains(&shown), "{shown}");
     }
-    let joining = format!("| circle, while joining it from afar | {} at most |", count("joining", "worst"));
+    for (case, row) in [("law-circle", "| the law alone, circle |"), ("law-bent", "| the law alone, bent curve |")] {
+        let shown = format!("{row} {} | {} B |", count(case, "worst"), bytes(case));
+        assert!(README.contains(&shown), "{shown}");
+    }
+    let joining =
+        format!("| whole step, circle, while joining it from afar | {} at most |", count("joining", "worst"));
     let tracking =
-        format!("| tracking (without the supervisor) | {} | {} B |", count("track", "worst"), bytes("track"));
+        format!("| tracking, without the supervisor | {} | {} B |", count("track", "worst"), bytes("track"));
     assert!(README.contains(&joining) && README.contains(&tracking), "{joining}, {tracking}");
 }

@@ -1,10 +1,12 @@
 //! Analytic functions, written once for every kind of number that a path is evaluated on.
 //!
-//! A curve or profile given as a formula over [`Analytic`] is evaluated on Taylor series along the payload's motion for
-//! its time derivatives, and on [dual numbers](crate::dual) of such series for its gradient besides.
+//! A curve or profile given as a formula over [`Analytic`] is evaluated on Taylor series along the
+//! payload's motion for its time derivatives, and on [dual numbers](crate::dual) of such series for
+//! its gradient besides.
 //!
-//! The series' rules follow from each function's differential equation, order by order (Griewank and Walther, *Evaluating
-//! Derivatives*, table 13.2): with y = f(x), each new coefficient of y is linear in known ones.
+//! The series' rules follow from each function's differential equation, order by order (Griewank
+//! and Walther, *Evaluating Derivatives*, table 13.2): with y = f(x), each new coefficient of y is
+//! linear in known ones.
 
 // As in series.rs: indices run over compile-time bounds below N.
 #![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
@@ -18,8 +20,8 @@ use crate::series::Series;
 ///
 /// Outside a function's domain the result is NaN or infinite, never a panic.
 ///
-/// A constant stands on the right, `x * 20.0`: with the number's kind left open, Rust knows no `20.0 * x`. Of a known
-/// [`Series`] both are the same.
+/// A constant stands on the right, `x * 20.0`: with the number's kind left open, Rust knows no
+/// `20.0 * x`. Of a known [`Series`] both are the same.
 pub trait Analytic<T: Real>:
     Copy
     + Neg<Output = Self>
@@ -48,7 +50,8 @@ pub trait Analytic<T: Real>:
     fn ln(self) -> Self;
     /// (sin x, cos x), x in rad.
     fn sin_cos(self) -> (Self, Self);
-    /// Angle of the point (`x`, `self`) ≠ 0, rad. Its value is in [−π, π]; its derivatives know no jump there.
+    /// Angle of the point (`x`, `self`) ≠ 0, rad. Its value is in [−π, π]; its derivatives know no
+    /// jump there.
     fn atan2(self, x: Self) -> Self;
     /// Hyperbolic tangent.
     fn tanh(self) -> Self;

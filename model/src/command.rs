@@ -5,6 +5,15 @@ use nalgebra::Vector3;
 use crate::scalar::Real;
 
 /// Thrust and torque for the coming hold.
+///
+/// ```
+/// use model::{Command, Vehicle, VehicleParams};
+///
+/// let vehicle = Vehicle::new(VehicleParams::<f32>::paper())?;
+/// let hover = Command::of_thrust(vehicle.hover_thrust());
+/// assert!(hover.torque.iter().all(|&torque| torque == 0.0));
+/// # Ok::<(), model::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command<T> {
     /// Total thrust along −b3, N.

@@ -5,7 +5,16 @@ use nalgebra::Vector3;
 use crate::scalar::Real;
 use crate::vehicle::Vehicle;
 
-/// Unmodelled effects, and how fast the forces change. Over a Taylor series they grow at these rates.
+/// Unmodelled effects, and how fast the forces change. Over a Taylor series they grow at these
+/// rates.
+///
+/// ```
+/// use model::{Disturbance, Vector3};
+///
+/// // A wind that pushes the payload north with 0.4 m/s².
+/// let wind = Disturbance { payload: Vector3::new(0.4, 0.0, 0.0), ..Disturbance::<f32>::none() };
+/// assert!(wind.rod == Vector3::zeros());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disturbance<T> {
     /// d, specific force on the payload in N, m/s².
@@ -45,22 +54,24 @@ impl<T: Real> Disturbance<T> {
         }
     }
 
-    /// Force on the payload in N (frame), N (newton): m_L d + m_Q (q·d) q. Along the `rod` forces on either body are one motion, of all the mass,
-    /// and counted here.
+    /// Force on the payload in N (frame), N (newton): m_L d + m_Q (q·d) q. Along the `rod` forces
+    /// on either body are one motion, of all the mass, and counted here.
     pub fn payload_force(&self, vehicle: &Vehicle<T>, rod: &Vector3<T>) -> Vector3<T> {
         let params = vehicle.params();
         self.payload * params.payload_mass + rod * (rod.dot(&self.payload) * params.uav_mass)
     }
 
-    /// Force on the UAV in N (frame), N (newton), across the `rod`: that of m_Q (d − L δ), since δ = (F_L/m_L − F_Q/m_Q)/L.
+    /// Force on the UAV in N (frame), N (newton), across the `rod`: that of m_Q (d − L δ), since
+    /// δ = (F_L/m_L − F_Q/m_Q)/L.
     pub fn uav_force(&self, vehicle: &Vehicle<T>, rod: &Vector3<T>) -> Vector3<T> {
         let params = vehicle.params();
         let force = (self.payload - self.rod * params.rod_length) * params.uav_mass;
         force - rod * rod.dot(&force)
     }
 
-    /// The payload mass, kg, that would explain d in still air, with `lambda` (m/s²) the payload's specific force along
-    /// `rod` without d: the rod's tension is shared as M λ, so M = M₀ λ/(λ + d·q).
+    /// The payload mass, kg, that would explain d in still air, with `lambda` (m/s²) the payload's
+    /// specific force along `rod` without d: the rod's tension is shared as M λ, so M = M₀ λ/(λ +
+    /// d·q) (12.6).
     pub fn implied_payload_mass(&self, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> T {
         let total = vehicle.total_mass() * lambda / (lambda + self.payload.dot(rod));
         (total - vehicle.params().uav_mass).max(T::zero())

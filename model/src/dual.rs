@@ -1,7 +1,9 @@
-//! Dual numbers: a value with its derivatives in M directions (forward-mode automatic differentiation).
+//! Dual numbers: a value with its derivatives in M directions (forward-mode automatic
+//! differentiation).
 //!
-//! Over [`Series`](crate::series::Series), `Dual<Series<T, N>, 3>` carries a function of position and its gradient, both along
-//! the payload's motion. Nested once more they carry second derivatives.
+//! Over [`Series`](crate::series::Series), `Dual<Series<T, N>, 3>` carries a function of position
+//! and its gradient, both along the payload's motion. Nested once more they carry second
+//! derivatives.
 
 // The product and quotient rules mix operators, as they should.
 #![allow(clippy::suspicious_arithmetic_impl)]
@@ -13,6 +15,15 @@ use crate::analytic::Analytic;
 use crate::scalar::Real;
 
 /// A value and its derivatives in M directions.
+///
+/// ```
+/// use model::{Series, variables};
+///
+/// // The gradient of x² y at (3, 2), of numbers: series of order 0.
+/// let [x, y] = variables([3.0, 2.0].map(Series::<f64, 1>::constant));
+/// let product = x * x * y;
+/// assert_eq!(product.partials.map(|partial| partial.value()), [12.0, 9.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<A, const M: usize> {
     /// The value.
@@ -42,7 +53,8 @@ impl<A: Copy, const M: usize> Dual<A, M> {
     }
 }
 
-/// The coordinates of `point`, each the variable of its own direction: a function of them has its gradient as partials.
+/// The coordinates of `point`, each the variable of its own direction: a function of them has its
+/// gradient as partials.
 #[inline]
 pub fn variables<T: Real, A: Analytic<T>, const M: usize>(point: [A; M]) -> [Dual<A, M>; M] {
     let mut coordinate = 0;

@@ -37,6 +37,17 @@ pub fn lambda<T: Real>(vehicle: &Vehicle<T>, state: &State<T>, thrust: T) -> T {
 /// q̈ = δ − |q̇|² q + (b3 − (b3·q) q) T/(m_Q L)
 /// ω̇ = J⁻¹ (J ω × ω + τ_d + τ)                                  (2.7)
 /// ```
+///
+/// ```
+/// use model::{Command, Disturbance, State, Vector3, Vehicle, VehicleParams, dynamics::Model};
+///
+/// let vehicle = Vehicle::new(VehicleParams::<f64>::paper())?;
+/// let state = State::at_rest(Vector3::zeros());
+/// let hover = Command::of_thrust(vehicle.hover_thrust());
+/// let acceleration = Model::at(&vehicle, &state).acceleration(&hover, &Disturbance::none());
+/// assert!(acceleration.payload.dot(&acceleration.payload) < 1e-20);
+/// # Ok::<(), model::OutOfRange<f64>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Model<'a, T> {
     vehicle: &'a Vehicle<T>,

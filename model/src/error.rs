@@ -7,7 +7,8 @@ use crate::scalar::Real;
 /// A parameter outside its allowed range. Names the field, the value and the range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutOfRange<T> {
-    /// The field's name, as in the struct that holds it, or what of several fields is out of range, in words.
+    /// The field's name, as in the struct that holds it, or what of several fields is out of range,
+    /// in words.
     pub field: &'static str,
     /// The value given, in the field's unit.
     pub value: T,

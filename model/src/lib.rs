@@ -1,11 +1,13 @@
-//! A multirotor that carries a payload on a cable, in words and numbers: its state, its parameters, its dynamics, and the
-//! arithmetic that a law, an estimator or a plant of it share. No law is in here.
+//! A multirotor that carries a payload on a cable, in words and numbers: its state, its parameters,
+//! its dynamics, and the arithmetic that a law, an estimator or a plant of it share. No law is in
+//! here.
 //!
-//! Conventions: inertial frame N is NED-like, **n3 points down**; thrust acts along −b3; the rod vector points **from the
-//! UAV to the payload**; positions and velocities are the payload's. SI units throughout. The *rod* is the taut cable, which
-//! the model takes for rigid and massless.
+//! Conventions: inertial frame N is NED-like, **n3 points down**; thrust acts along −b3; the rod
+//! vector points **from the UAV to the payload**; positions and velocities are the payload's. SI
+//! units throughout. The *rod* is the taut cable, which the model takes for rigid and massless.
 //!
-//! One source, two scalars: everything is generic over [`Real`], `f32` on the target and `f64` as the reference.
+//! One source, two scalars: everything is generic over [`Real`], `f32` on the target and `f64` as
+//! the reference.
 #![no_std]
 #![warn(clippy::must_use_candidate, clippy::missing_errors_doc)]
 

@@ -3,8 +3,8 @@
 use crate::error::OutOfRange;
 use crate::scalar::Real;
 
-/// A parameter's name, its range and its value where none is given. Constructors check against these and parameter tables list
-/// them, so that each number is written once.
+/// A parameter's name, its range and its value where none is given. Constructors check against
+/// these and parameter tables list them, so that each number is written once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// The field's name, as in the struct that holds it.

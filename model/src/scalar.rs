@@ -1,8 +1,9 @@
 //! The scalar of the law: `f32` on the target, `f64` as the reference.
 //!
-//! Every square root and transcendental goes through [`Real`], and from there to code whose result does not depend on
-//! the platform (libm, the FPU's correctly rounded square root, and the sine kernel below). Together with IEEE 754
-//! arithmetic and no contraction into fused operations this makes host and target agree bit for bit.
+//! Every square root and transcendental goes through [`Real`], and from there to code whose result
+//! does not depend on the platform (libm, the FPU's correctly rounded square root, and the sine
+//! kernel below). Together with IEEE 754 arithmetic and no contraction into fused operations this
+//! makes host and target agree bit for bit.
 
 use core::fmt::{Debug, Display};
 use core::ops::Neg;
@@ -11,8 +12,8 @@ use nalgebra::{ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssig
 use num_traits::{One, Zero};
 
 pub(crate) mod sealed {
-    /// Closes [`Real`](super::Real), and holds the whole numbers that series arithmetic needs: from a table, since an index turned
-    /// into a number at run time would take double precision.
+    /// Closes [`Real`](super::Real), and holds the whole numbers that series arithmetic needs: from
+    /// a table, since an index turned into a number at run time would take double precision.
     pub trait Sealed: Sized {
         /// 0 to 7.
         const WHOLE: [Self; 8];
@@ -22,7 +23,8 @@ pub(crate) mod sealed {
         const FACTORIAL: [Self; 8];
         /// 1/k! for k up to 7.
         const PER_FACTORIAL: [Self; 8];
-        /// 1.5 times two to the number of bits behind the point: added and taken away, it rounds to the nearest whole number.
+        /// 1.5 times two to the number of bits behind the point: added and taken away, it rounds to
+        /// the nearest whole number.
         const ROUND_TO_WHOLE: Self;
         /// Half of the distance between the numbers just above one.
         const HALF_ULP: Self;
@@ -45,7 +47,8 @@ pub(crate) mod sealed {
     tables!(f64);
 }
 
-/// A real number of the law: `f32` or `f64`. Sealed, since bit equality between platforms is promised for these two.
+/// A real number of the law: `f32` or `f64`. Sealed, since bit equality between platforms is
+/// promised for these two.
 pub trait Real:
     sealed::Sealed
     + Scalar
@@ -62,7 +65,8 @@ pub trait Real:
     + ClosedDivAssign
     + Neg<Output = Self>
 {
-    /// The nearest value to a literal or a host-side `f64`. On the target use it with constants only: there it folds away.
+    /// The nearest value to a literal or a host-side `f64`. On the target use it with constants
+    /// only: there it folds away.
     fn lit(value: f64) -> Self;
     /// The value as `f64`, exact. Host-side use: the target has no double precision unit.
     fn to_f64(self) -> f64;
@@ -76,8 +80,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// `(sin x, cos x)`, x in rad. In `f32`: absolute error ≤ 1.2e-7 for |x| ≤ 8192, NaN beyond.
     fn sin_cos(self) -> (Self, Self);
-    /// Four-quadrant angle of the point (`x`, `self`), rad, in [−π, π]; 0 at the origin. In `f32`: absolute error ≤ 3e-7 for finite
-    /// numbers with a finite sum.
+    /// Four-quadrant angle of the point (`x`, `self`), rad, in [−π, π]; 0 at the origin. In `f32`:
+    /// absolute error ≤ 3e-7 for finite numbers with a finite sum.
     fn atan2(self, x: Self) -> Self;
     /// `eˣ`.
     fn exp(self) -> Self;
@@ -105,7 +109,8 @@ pub trait Real:
     fn clamp(self, low: Self, high: Self) -> Self {
         self.max(low).min(high)
     }
-    /// The angle `self` − 2πk in (−π, π], to within the rounding of its turns. In `f32`: for up to 4 million of them.
+    /// The angle `self` − 2πk in (−π, π], to within the rounding of its turns. In `f32`: for up to
+    /// 4 million of them.
     #[inline]
     fn wrap_angle(self) -> Self {
         // +π must stay and −π become +π, so the tie is rounded from just below.
@@ -211,9 +216,10 @@ impl Real for f64 {
 
 /// Sine and cosine in `f32` arithmetic alone.
 ///
-/// libm's reduce and evaluate in f64, which a Cortex-M4F has to emulate (2,079 instructions a pair). Here π/2 is
-/// subtracted in three parts whose products with a quadrant count below 2¹³ are exact (Cody and Waite), and the
-/// polynomials on [−π/4, π/4] are those of the Cephes library's `sinf` and `cosf`.
+/// libm's reduce and evaluate in f64, which a Cortex-M4F has to emulate (2,079 instructions a
+/// pair). Here π/2 is subtracted in three parts whose products with a quadrant count below 2¹³ are
+/// exact (Cody and Waite), and the polynomials on [−π/4, π/4] are those of the Cephes library's
+/// `sinf` and `cosf`.
 fn sin_cos_f32(x: f32) -> (f32, f32) {
     const RANGE: f32 = 8192.0;
     // The nearest integer then stands in the low bits of the sum.
@@ -231,14 +237,16 @@ fn sin_cos_f32(x: f32) -> (f32, f32) {
     let z = r * r;
     let sin = ((-1.951_529_6e-4 * z + 8.332_161e-3) * z - 1.666_665_5e-1) * z * r + r;
     let cos = ((2.443_315_7e-5 * z - 1.388_731_6e-3) * z + 4.166_664_6e-2) * z * z - 0.5 * z + 1.0;
-    // Odd quadrants exchange the two, and signs go − for sine in 2 and 3, for cosine in 1 and 2: no branch.
+    // Odd quadrants exchange the two, and signs go − for sine in 2 and 3, for cosine in 1 and 2: no
+    // branch.
     let (sin, cos) = if quadrant & 1 == 0 { (sin, cos) } else { (cos, sin) };
     let negate = |value: f32, when: u32| f32::from_bits(value.to_bits() ^ (when & 2) << 30);
     (negate(sin, quadrant), negate(cos, quadrant.wrapping_add(1)))
 }
 
-/// Where libm's follows every special case of the standard, this is short: the angle from the nearer axis or diagonal, at most π/8, by the
-/// polynomial of the Cephes library's `atanf`, then back to its octant.
+/// Where libm's follows every special case of the standard, this is short: the angle from the
+/// nearer axis or diagonal, at most π/8, by the polynomial of the Cephes library's `atanf`, then
+/// back to its octant.
 #[inline(never)]
 fn atan2_f32(y: f32, x: f32) -> f32 {
     use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -261,7 +269,8 @@ fn atan2_f32(y: f32, x: f32) -> f32 {
 mod tests {
     use super::*;
 
-    /// The bound the documentation states: half an ulp of rounding the result, one of the polynomial, and the reduction.
+    /// The bound the documentation states: half an ulp of rounding the result, one of the
+    /// polynomial, and the reduction.
     const SIN_COS_BOUND: f64 = 1.2e-7;
     /// An ulp of π for the rounding of π and of the result, and half of one for the rest.
     const ATAN2_BOUND: f64 = 3e-7;

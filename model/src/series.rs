@@ -1,15 +1,18 @@
 //! Truncated Taylor polynomials of one variable (univariate jets) and their arithmetic.
 //!
-//! [`Series<T, N>`] holds a function of time about "now": f(t) = Σ cₖ tᵏ, cₖ = f⁽ᵏ⁾(0)/k!, k < N. A path evaluated on the
-//! payload's series gives its outputs with all their time derivatives in one pass (Taylor-mode automatic
-//! differentiation; Griewank and Walther, *Evaluating Derivatives*, ch. 13). Lengths are compile-time constants and every
-//! loop has constant bounds, so the cost is constant.
+//! [`Series<T, N>`] holds a function of time about "now": f(t) = Σ cₖ tᵏ, cₖ =
+//! f⁽ᵏ⁾(0)/k!, k < N. A path evaluated on the payload's series gives its outputs with all their
+//! time derivatives in one pass (Taylor-mode automatic differentiation; Griewank and
+//! Walther, *Evaluating Derivatives*, ch. 13). Lengths are compile-time constants and every loop
+//! has constant bounds, so the cost is constant.
 //!
 //! Powers and transcendental functions are those of [`Analytic`](crate::analytic::Analytic).
 //!
-//! **Coefficients, not derivatives:** the k-th derivative is k! times the k-th coefficient, see [`Series::derivative`].
+//! **Coefficients, not derivatives:** the k-th derivative is k! times the k-th coefficient, see
+//! [`Series::derivative`].
 
-// Indices here run over compile-time bounds below N; iterator chains in their place hide the convolutions.
+// Indices here run over compile-time bounds below N; iterator chains in their place hide the
+// convolutions.
 #![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
@@ -17,6 +20,15 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 use crate::scalar::Real;
 
 /// Taylor coefficients of order 0 to N − 1, N ≤ 7.
+///
+/// ```
+/// use model::{Analytic, Series};
+///
+/// // x = 3 + 2 t about t = 0, and its square: 9 + 12 t + 4 t².
+/// let x = Series::<f64, 4>::from_derivatives([3.0, 2.0, 0.0, 0.0]);
+/// let square = x.square();
+/// assert_eq!([square.value(), square.derivative(1), square.derivative(2)], [9.0, 12.0, 8.0]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Series<T, const N: usize>(pub [T; N]);
 
@@ -102,7 +114,8 @@ impl<T: Real, const N: usize> Series<T, N> {
     }
 }
 
-/// For series of any length: what is called off the path, where a copy for each would only be larger.
+/// For series of any length: called where speed does not matter, and one copy is smaller than one
+/// for each.
 #[inline(never)]
 fn subtract<T: Real>(from: &mut [T], other: &[T], factor: T) {
     for (c, &other) in from.iter_mut().zip(other) {
@@ -215,8 +228,9 @@ impl<T: Real, const N: usize> Div<T> for Series<T, N> {
     }
 }
 
-/// The scalar on the left, as on the right: `20.0 * x`, `1.0 - x`, `1.0 / x`. A formula that is generic over
-/// [`Analytic`](crate::Analytic) has it on the right only, since Rust does not carry bounds on the scalar from trait to user.
+/// The scalar on the left, as on the right: `20.0 * x`, `1.0 - x`, `1.0 / x`. A formula that is
+/// generic over [`Analytic`](crate::Analytic) has it on the right only, since Rust does not carry
+/// bounds on the scalar from trait to user.
 macro_rules! scalar_on_the_left {
     ($($real:ty),*) => {$(
         impl<const N: usize> Add<Series<$real, N>> for $real {

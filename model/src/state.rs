@@ -25,8 +25,21 @@ pub enum Channel {
 
 /// Configuration and velocity of payload, rod and UAV.
 ///
-/// **n3 points down, and the rod vector points from the UAV to the payload:** hanging straight down is `rod` = e3, and
-/// altitude is −`position[2]`.
+/// **n3 points down, and the rod vector points from the UAV to the payload:** hanging straight down
+/// is `rod` = e3, and altitude is −`position[2]`.
+///
+/// ```
+/// use model::{State, Vector3};
+///
+/// // UAV and payload as motion capture sees them, level and at rest; n3 points down.
+/// let (uav, payload) = (Vector3::new(0.2, 0.0, -12.0_f32), Vector3::new(0.0, 0.0, -10.0));
+/// let along = payload - uav;
+/// let state = State { rod: along / along.dot(&along).sqrt(), ..State::at_rest(payload) };
+/// assert!(state.check().is_ok());
+///
+/// // A length forgotten is found before it flies.
+/// assert!(State { rod: along, ..state }.check().is_err());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State<T> {
     /// Position p of the **payload** in N, m. The UAV is at p − L q.
@@ -56,8 +69,8 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// From the paper's coordinates (p, α, β, φ, θ, ψ, v, α̇, β̇, ω): q = Rx(α) Ry(β) e3 and R = Ry(θ) Rx(φ) Rz(ψ).
-    /// Any values are allowed; angles in rad.
+    /// From the paper's coordinates (p, α, β, φ, θ, ψ, v, α̇, β̇, ω): q = Rx(α) Ry(β) e3 and
+    /// R = Ry(θ) Rx(φ) Rz(ψ). Any values are allowed; angles in rad.
     pub fn from_paper(x: &[T; 16]) -> Self {
         let [p1, p2, p3, alpha, beta, phi, theta, psi, v1, v2, v3, alpha_dot, beta_dot, o1, o2, o3] = *x;
         let (sa, ca) = alpha.sin_cos();
@@ -89,8 +102,8 @@ impl<T: Real> State<T> {
         }
     }
 
-    /// To the paper's coordinates. Its charts end where q2 = q3 = 0 (cos β = 0) and where b3 = ±e2 (cos φ = 0): there
-    /// the angles stay finite and α̇, β̇ do not.
+    /// To the paper's coordinates. Its charts end where q2 = q3 = 0 (cos β = 0) and where b3 = ±e2
+    /// (cos φ = 0): there the angles stay finite and α̇, β̇ do not.
     pub fn to_paper(&self) -> [T; 16] {
         let (p, v, q, w, r, o) =
             (&self.position, &self.velocity, &self.rod, &self.rod_rate, &self.attitude, &self.body_rate);
@@ -117,9 +130,9 @@ impl<T: Real> State<T> {
         ]
     }
 
-    /// `Ok` if every number is finite and within the range the law is trusted with: position within 100 km, velocity
-    /// within 1 km/s, rod rate and body rate within 100 rad/s, |q| and the attitude's columns within 1 % of 1, and those
-    /// columns a right-handed frame.
+    /// `Ok` if every number is finite and within the range the law is trusted with: position within
+    /// 100 km, velocity within 1 km/s, rod rate and body rate within 100 rad/s, |q| and the
+    /// attitude's columns within 1 % of 1, and those columns a right-handed frame.
     ///
     /// # Errors
     /// The first [`Channel`] that is not.
@@ -167,7 +180,7 @@ impl<T: Real> State<T> {
     }
 }
 
-/// |v|² ≤ `squared`, which no NaN is.
+/// |v|² ≤ `squared`; false for a NaN.
 #[inline(never)]
 pub fn is_within<T: Real>(v: &Vector3<T>, squared: T) -> bool {
     v.dot(v) <= squared

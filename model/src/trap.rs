@@ -1,8 +1,10 @@
-//! A scalar that stops at the first invalid operation: f32 in every bit, but a NaN that comes of numbers is a panic, which names
-//! operation, operands and place (and the backtrace, how it came to it).
+//! A scalar that stops at the first invalid operation: f32 in every bit, except that an operation
+//! that makes a NaN of numbers panics and names itself, its operands and its place (the backtrace
+//! says how it came to it).
 //!
-//! For simulators and tests, behind the feature `trap`; a flight program is built without. Infinities pass, as in IEEE 754's *invalid*
-//! exception: 1/0 is one, and 0 × ∞, ∞ − ∞, 0/0 and roots and logarithms below zero stop. So does a sine of what is beyond its range.
+//! For simulators and tests, behind the feature `trap`; a flight program is built without.
+//! Infinities pass, as in IEEE 754's *invalid* exception: 1/0 is one, and 0 × ∞, ∞ − ∞, 0/0
+//! and roots and logarithms below zero stop. So does a sine of what is beyond its range.
 
 use core::cmp::Ordering;
 use core::fmt::{self, Debug, Display};

@@ -7,13 +7,31 @@ use crate::range::{GRAVITY, INERTIA, PAYLOAD_MASS, ROD_LENGTH, UAV_MASS};
 use crate::scalar::Real;
 
 /// What the law has to know of the vehicle, SI units.
+///
+/// ```
+/// use model::{Vehicle, VehicleParams};
+///
+/// let mine = VehicleParams {
+///     payload_mass: 1.2_f32,
+///     uav_mass: 3.4,
+///     rod_length: 3.0,
+///     inertia: [0.05, 0.05, 0.08],
+///     gravity: 9.81,
+/// };
+/// assert!(Vehicle::new(mine).is_ok());
+///
+/// // A number that can't be is refused by name.
+/// let error = Vehicle::new(VehicleParams { rod_length: -3.0, ..mine }).unwrap_err();
+/// assert_eq!(error.field, "rod_length");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleParams<T> {
     /// Payload mass m_L, kg.
     pub payload_mass: T,
     /// UAV mass m_Q without the payload, kg.
     pub uav_mass: T,
-    /// Length L of the rod, which is the taut cable taken for rigid and massless, from the UAV's centre of mass to the payload, m.
+    /// Length L of the rod, which is the taut cable taken for rigid and massless, from the UAV's
+    /// centre of mass to the payload, m.
     pub rod_length: T,
     /// Principal moments of inertia J of the UAV in body axes, kg·m².
     pub inertia: [T; 3],
@@ -22,7 +40,8 @@ pub struct VehicleParams<T> {
 }
 
 impl<T: Real> VehicleParams<T> {
-    /// The paper's vehicle, its Table I, with g = 9.81 m/s²: for its figures and for examples. Yours is another.
+    /// The paper's vehicle, its Table I, with g = 9.81 m/s²: for its figures and for examples.
+    /// Yours is another.
     #[must_use]
     pub fn paper() -> Self {
         Self {
@@ -50,6 +69,14 @@ impl<T: Real> VehicleParams<T> {
 }
 
 /// A vehicle whose parameters are in range, with the constants the law derives from them.
+///
+/// ```
+/// use model::{Vehicle, VehicleParams};
+///
+/// let vehicle = Vehicle::new(VehicleParams::<f32>::paper())?;
+/// assert!((vehicle.hover_thrust() - 3.0 * 9.81).abs() < 1e-5);
+/// # Ok::<(), model::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vehicle<T> {
     params: VehicleParams<T>,

@@ -92,7 +92,8 @@ impl<T: Real> Actuators<T> {
         Ok(Self { limits, rotors, per_max_speed: T::one() / rotor.max_speed })
     }
 
-    // After a take-over what is applied differs without being limited; mostly it does not differ, and nothing has to be found out.
+    // Mostly what is applied is what was asked for, and there is nothing to find out. After a
+    // take-over it differs without being limited.
     pub(crate) fn limit(&self, wanted: &Command<T>, applied: &Command<T>) -> bool {
         wanted != applied && self.apply(wanted) != *wanted
     }
@@ -101,8 +102,8 @@ impl<T: Real> Actuators<T> {
         self.limits
     }
 
-    /// Rotor speeds as shares of the largest, 0 to 1, for a command as it was [applied](Actuation::apply). A command of nothing at all
-    /// stops them, where the least thrust has them idle.
+    /// Rotor speeds as shares of the largest, 0 to 1, for a command as it was
+    /// [applied](Actuation::apply). A zero command stops them; at the least thrust they idle.
     #[must_use]
     pub fn duties(&self, applied: &Command<T>) -> [T; 4] {
         if *applied == Command::zero() {

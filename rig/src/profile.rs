@@ -51,7 +51,8 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
     ),
 ];
 
-/// A path of any kind, chosen at run time: all from numbers, but for a curve by the formulas `F` and profiles by `G`.
+/// A path of any kind, chosen at run time: all from numbers, but for a curve by the formulas `F`
+/// and profiles by `G`.
 pub type AnyPath<T, F = NoFormula, G = NoFormula, const K: usize = { crate::HARMONICS }> =
     Profiled<AnyCurve<T, F, K>, AnySpeed<T, G>, AnyYaw<T, G>>;
 

@@ -122,7 +122,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
     }
 
-    /// One control step on whatever state there is. The tracking law takes no request, and has a reference, which is at `phase` (rad) now.
+    /// One control step on whatever state there is. The tracking law takes no request, and has a
+    /// reference, which is at `phase` (rad) now.
     #[inline]
     pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
         self.last = match &mut self.law {
@@ -170,7 +171,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
     }
 
-    /// The last step's command as rotor speeds, shares of the largest: front right, rear left, front left, rear right.
+    /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
+    /// front left, rear right.
     #[must_use]
     pub fn duties(&self) -> [T; 4] {
         self.actuators().duties(&self.last.command)
@@ -236,7 +238,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
     }
 
-    /// Where the last step's command came from and what was found, at the `state` that it was made on.
+    /// Where the last step's command came from and what was found, at the `state` that it was made
+    /// on.
     #[must_use]
     pub fn telemetry(&self, state: &State<T>) -> Telemetry<T> {
         let (vehicle, found) = (self.vehicle(), self.disturbance());

@@ -1,4 +1,5 @@
-//! The tracking law and the least guard that it can fly with: a good state and a finite answer, or the policy's command without either.
+//! The tracking law and the least guard that it can fly with: a good state and a finite answer, or
+//! the policy's command without either.
 
 use controller::{
     Actuation, Command, Fault, Lost, Mode, Real, Reference, Refused, Solution, State, TrackXi, Tracker, Vehicle,
@@ -103,8 +104,8 @@ impl<T: Real> Tracking<T> {
         }
         let [radius, p3, rate] = self.circle;
         let solution = self.tracker.track(state, &Reference::circle(radius, p3, rate, phase));
-        // The command is limited, which may make a number of what was none. And ζ is the law's memory: once it is no number, neither is
-        // any later command.
+        // Limiting can turn a NaN into a finite command, so the law's own numbers are tested; and
+        // once ζ is not finite, no later command is.
         let mut numbers = solution.nu.iter().chain(self.tracker.zeta());
         if !(solution.command.is_finite() && numbers.all(|number| number.is_finite())) {
             return self.without(Some(Fault::NotFinite));

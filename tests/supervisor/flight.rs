@@ -70,7 +70,8 @@ pub struct Flight<L> {
 }
 
 impl<L: Law<f32>> Flight<L> {
-    /// The plant in `state`, its payload `payload_mass` kg, under `applied`, N, without torque; the law takes over.
+    /// The plant in `state`, its payload `payload_mass` kg, under `applied`, N, without torque; the
+    /// law takes over.
     pub fn new(
         mut supervisor: Supervisor<f32, L>,
         state: &State<f64>,

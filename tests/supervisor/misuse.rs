@@ -1,4 +1,5 @@
-//! An interface that can't be misused: what makes no sense is refused where it is said, with the reason, and changes nothing.
+//! An interface that can't be misused: what makes no sense is refused where it is said, with the
+//! reason, and changes nothing.
 
 use controller::{
     ActuatorLimits, Analytic, Channel, Circle, Command, Curve, FixedYaw, Follower, FourierPath, Gains, Harmonics,

@@ -1,4 +1,5 @@
-//! Exactly at the paper's singular configurations, around them, and upside down: a defined mode, a bounded command, and back to the path.
+//! Exactly at the paper's singular configurations, around them, and upside down: a defined mode, a
+//! bounded command, and back to the path.
 
 use controller::{Fault, Margin, Matrix3, Mode, Policy, Request, Sampling, State, Vector3};
 
@@ -67,7 +68,8 @@ fn nearby(state: &State<f64>, size: f64, case: usize) -> State<f64> {
     }
 }
 
-/// Flies from `state`, the law asked to follow from there, and gives the height that the UAV loses, m.
+/// Flies from `state`, the law asked to follow from there, and gives the height that the UAV loses,
+/// m.
 fn recovers(name: &str, state: &State<f64>, applied: f64) -> f64 {
     let sampling = Sampling { rotor_lag: LAG as f32, ..Sampling::every(PERIOD as f32) };
     let mut flight = Flight::new(supervisor(sampling, Policy::default()), state, 0.5, applied, LAG);
@@ -94,8 +96,8 @@ fn the_path_is_reached_from_every_singular_configuration_and_around() {
         for size in [0.0, 1e-7, 1e-3, 0.1] {
             let lost = recovers(name, &nearby(&state, size, case), applied);
             println!("{name} {size:e}: {lost:.2} m lost");
-            // Half a turn takes 0.6 s, in which a fall is 1.8 m and 6 m/s; to stop that at 1 g takes as much again. And the path below the
-            // axis is 3 m down.
+            // Half a turn takes 0.6 s, in which a fall is 1.8 m and 6 m/s; to stop that at 1 g
+            // takes as much again. And the path below the axis is 3 m down.
             assert!(lost < 4.0, "{name} {size:e}: {lost} m lost");
         }
     }

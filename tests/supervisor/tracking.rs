@@ -1,4 +1,5 @@
-//! The tracking law under the supervisor: the same modes, the same approach, a reference in time for a path.
+//! The tracking law under the supervisor: the same modes, the same approach, a reference in time
+//! for a path.
 
 use controller::{
     EnvelopeParams, Fault, Law, Mode, ObserverParams, Policy, Reference, Request, Sampling, State, Supervisor, Track,

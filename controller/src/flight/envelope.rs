@@ -24,6 +24,17 @@ impl<T: Real> Band<T> {
 }
 
 /// The envelope in physical terms. Angles and their warnings below their limits, the others above.
+///
+/// ```
+/// use controller::{Band, Envelope, EnvelopeParams, Vehicle, VehicleParams};
+///
+/// // The rod to 45°, with a warning from 35°.
+/// let degrees = core::f32::consts::PI / 180.0;
+/// let rod_angle = Band { warning: 35.0 * degrees, limit: 45.0 * degrees };
+/// let params = EnvelopeParams { rod_angle, ..EnvelopeParams::wide() };
+/// assert!(Envelope::new(&Vehicle::new(VehicleParams::paper())?, &params).is_ok());
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EnvelopeParams<T> {
     /// Rod from the vertical, rad.
@@ -43,8 +54,8 @@ pub struct EnvelopeParams<T> {
 }
 
 impl<T: Real> EnvelopeParams<T> {
-    /// Angles to 70° (warning at 55°), tension and thrust down to a tenth of their values at hover (a quarter), path to a tenth,
-    /// reach to a twentieth (a fifth each).
+    /// Angles to 70° (warning at 55°), tension and thrust down to a tenth of their values at hover
+    /// (a quarter), path to a tenth, reach to a twentieth (a fifth each).
     #[must_use]
     pub fn wide() -> Self {
         Self {
@@ -70,8 +81,8 @@ pub enum Standing {
     Beyond(Margin),
 }
 
-/// How much of the way from a margin's limit to its warning is left: `per_band` · value − `offset`, 1 at the warning and 0 at
-/// the limit.
+/// How much of the way from a margin's limit to its warning is left: `per_band` · value − `offset`,
+/// 1 at the warning and 0 at the limit.
 #[derive(Clone, Copy, Debug)]
 struct Threshold<T> {
     per_band: T,
@@ -80,19 +91,19 @@ struct Threshold<T> {
 
 impl<T: Real> Threshold<T> {
     fn new(warning: T, limit: T) -> Self {
-        // Without a band between the two, a warning is hardly ever due.
+        // Where warning and limit coincide, a band of almost no width.
         let per_band = T::one() / (warning - limit).max(T::lit(1e-6));
         Self { per_band, offset: per_band * limit }
     }
 
-    /// An angle's, of which `margin` makes what stands in [`Margins`].
+    /// Of an angle; `margin` turns it into the number in [`Margins`].
     fn of_angle(band: &Band<T>, range: &BandRange, margin: impl Fn(T) -> T) -> Result<Self, OutOfRange<T>> {
         range.limit.check(band.limit)?;
         OutOfRange::within(range.warning.field, band.warning, T::lit(range.warning.min), band.limit)?;
         Ok(Self::new(margin(band.warning), margin(band.limit)))
     }
 
-    /// A share's, of which all is `unit`.
+    /// Of a share; the whole is `unit`.
     fn of_share(band: &Band<T>, range: &BandRange, unit: T) -> Result<Self, OutOfRange<T>> {
         range.limit.check(band.limit)?;
         OutOfRange::within(range.warning.field, band.warning, band.limit, T::lit(range.warning.max))?;
@@ -136,8 +147,8 @@ impl<T: Real> Envelope<T> {
         Ok(Self { thresholds })
     }
 
-    /// How `margins` stand by the least of them, with the determinant of the path's system as a share of `path_det`, its value
-    /// on the path.
+    /// How `margins` stand by the least of them, with the determinant of the path's system as a
+    /// share of `path_det`, its value on the path.
     #[inline(never)]
     pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
         let (mut least, mut margin) = (T::one(), Margin::RodAngle);

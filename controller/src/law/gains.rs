@@ -1,8 +1,9 @@
 //! Output gains from poles, and the test that they make a stable loop.
 //!
-//! Linearized, output i is a chain of r integrators closed by ν = −Σ kⱼ h⁽ʲ⁾, with characteristic polynomial
-//! sʳ + k_{r−1} s^{r−1} + … + k₀. Integral action (15) makes it s (sʳ + … + k₀) + k̃, which **bounds k̃ from above**: the paper's
-//! K̃ with slower poles is unstable. So gains are tested by Routh's criterion wherever they are set.
+//! Linearized, output i is a chain of r integrators closed by ν = −Σ kⱼ h⁽ʲ⁾, with the
+//! characteristic polynomial (8.1), sʳ + k_{r−1} s^{r−1} + … + k₀. Integral action makes it
+//! (8.2), s (sʳ + … + k₀) + k̃, which **bounds k̃ from above**: the paper's K̃ with slower
+//! poles is unstable. So gains are tested by Routh's criterion wherever they are set.
 
 // The Routh table and polynomial products index over compile-time bounds.
 #![allow(clippy::indexing_slicing)]
@@ -14,6 +15,15 @@ use model::{OutOfRange, Real};
 use crate::ranges::POLE;
 
 /// One real pole or one complex-conjugate pair, 1/s.
+///
+/// ```
+/// use controller::{Pole, place};
+///
+/// // (s + 2)(s² + 2 s + 5), low order first and without the leading 1.
+/// let k: [f64; 3] = place(&[Pole::Real(-2.0), Pole::Pair { re: -1.0, im: 2.0 }])?;
+/// assert_eq!(k, [10.0, 9.0, 4.0]);
+/// # Ok::<(), controller::GainError<f64>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Pole<T> {
     /// A real pole.
@@ -101,7 +111,8 @@ impl<T: Real> fmt::Display for GainError<T> {
 
 impl<T: Real> core::error::Error for GainError<T> {}
 
-/// The gains that put real poles at −first, −(first + 1), … times `bandwidth` on a chain of R integrators.
+/// The gains that put real poles at −first, −(first + 1), … times `bandwidth` on a chain of R
+/// integrators.
 pub(crate) fn spread<T: Real, const R: usize>(bandwidth: T, first: u8) -> [T; R] {
     let mut k = [T::zero(); R];
     for (degree, pole) in (first..).take(R).enumerate() {
@@ -110,8 +121,8 @@ pub(crate) fn spread<T: Real, const R: usize>(bandwidth: T, first: u8) -> [T; R]
     k
 }
 
-/// Multiplies a monic polynomial of `degree`, its coefficients below the leading one in `k`, low order first, by the monic one
-/// whose coefficients below the leading one are `factor`.
+/// Multiplies a monic polynomial of `degree`, its coefficients below the leading one in `k`, low
+/// order first, by the monic one whose coefficients below the leading one are `factor`.
 fn multiply<T: Real, const R: usize, const N: usize>(k: &mut [T; R], degree: usize, factor: &[T; N]) {
     let old = *k;
     for (j, k) in k.iter_mut().enumerate().take(degree + N) {
@@ -127,14 +138,15 @@ fn multiply<T: Real, const R: usize, const N: usize>(k: &mut [T; R], degree: usi
 /// The gains k₀ … k_{R−1}, low order first, that place `poles` on a chain of R integrators.
 ///
 /// # Errors
-/// The poles are not R, or one of them is not in the open left half-plane, or further from zero than
-/// [its range](crate::ranges::POLE).
+/// The poles are not R, or one of them is not in the open left half-plane, or further from zero
+/// than [its range](crate::ranges::POLE).
 pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainError<T>> {
     let given = poles.iter().map(|pole| if matches!(pole, Pole::Real(_)) { 1 } else { 2 }).sum();
     if given != R {
         return Err(GainError::PoleCount { expected: R, given });
     }
-    // A monic polynomial below its leading term, low order first, padded with zeros above its degree.
+    // A monic polynomial below its leading term, low order first, padded with zeros above its
+    // degree.
     let mut k = [T::zero(); R];
     let mut degree = 0;
     for pole in poles {
@@ -161,7 +173,8 @@ pub fn place<T: Real, const R: usize>(poles: &[Pole<T>]) -> Result<[T; R], GainE
     Ok(k)
 }
 
-/// Whether sᴿ + k_{R−1} s^{R−1} + … + k₀ has all its roots in the open left half-plane: Routh's criterion.
+/// Whether sᴿ + k_{R−1} s^{R−1} + … + k₀ has all its roots in the open left half-plane:
+/// Routh's criterion.
 pub fn is_hurwitz<T: Real, const R: usize>(k: &[T; R]) -> bool {
     const { assert!(R >= 1 && R <= 7) };
     // Two rows of Routh's table: coefficients of sᴿ, sᴿ⁻², … and of sᴿ⁻¹, sᴿ⁻³, …
@@ -187,7 +200,8 @@ pub fn is_hurwitz<T: Real, const R: usize>(k: &[T; R]) -> bool {
     true
 }
 
-/// Checks the gains `k` of `output` (1 to 4), with `integral` action where the closed loop is s (sᴿ + … + k₀) + k̃, N = R + 1.
+/// Checks the gains `k` of `output` (1 to 4), with `integral` action where the closed loop is s
+/// (sᴿ + … + k₀) + k̃, N = R + 1.
 pub(crate) fn check<T: Real, const R: usize, const N: usize>(
     output: usize,
     k: &[T; R],
@@ -206,7 +220,8 @@ pub(crate) fn check<T: Real, const R: usize, const N: usize>(
     if integral == T::zero() || stable(integral) {
         return Ok(());
     }
-    // The limit between 0, where the loop is stable, and a gain where it is not: by bisection, once, at set-up.
+    // The limit between 0, where the loop is stable, and a gain where it is not: by bisection,
+    // once, at set-up.
     let half = T::lit(0.5);
     let mut low = T::zero();
     let mut high = if integral > T::zero() && integral.is_finite() { integral } else { T::lit(1e12) };
@@ -271,7 +286,8 @@ mod tests {
 
     #[test]
     fn integral_limit_is_where_a_root_crosses() {
-        // s (s + 2)⁶ + k̃: a root crosses at s = jω where the phase of jω (jω + 2)⁶ is −π, so atan(ω/2) = π/12.
+        // s (s + 2)⁶ + k̃: a root crosses at s = jω where the phase of jω (jω + 2)⁶ is −π, so
+        // atan(ω/2) = π/12.
         let omega = 2.0 * libm::tan(core::f64::consts::PI / 12.0);
         let limit = omega * libm::pow(omega * omega + 4.0, 3.0);
         let k: [f64; 6] = place(&[Pole::Real(-2.0); 6]).unwrap();

@@ -1,20 +1,23 @@
-//! The law's distances from where it is singular.
+//! The law's distances from where it is singular: theory, section 9.
 
 use model::{Real, State, Vehicle, Yaw, dynamics::lambda};
 use nalgebra::Vector3;
 
-/// The numbers the law divides by, as signed distances from zero: the paper's singularities, the path's and the yaw's.
+/// The numbers the law divides by, as signed distances from zero: the paper's singularities, the
+/// path's and the yaw's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Margins<T> {
     /// q·e3, cos α cos β: 1 hanging straight down, 0 with the rod horizontal.
     pub q3: T,
     /// q·b3: 1 with the thrust along the rod, 0 across it.
     pub q_b3: T,
-    /// Payload's specific force along the rod, m/s²: −g hanging at rest, 0 in free fall (a slack cable).
+    /// Payload's specific force along the rod, m/s²: −g hanging at rest, 0 in free fall (a slack
+    /// cable).
     pub lambda: T,
     /// T/(m_Q L), 1/s²: 0 without thrust.
     pub kappa: T,
-    /// (∇h1 × ∇h2)·ρ, in the units of h1 and h2 per m²; 1 for trajectory tracking. Negative where ρ is the opposite of (3).
+    /// (∇h1 × ∇h2)·ρ, in the units of h1 and h2 per m²; 1 for trajectory tracking. Negative where
+    /// ρ is the opposite of (3.2).
     pub path_det: T,
     /// What is left of the reach of a path with a nearest point; 1 for the others.
     pub reach: T,
@@ -37,7 +40,8 @@ impl<T: Real> Margins<T> {
         }
     }
 
-    /// In the order of [`Margin::ALL`], each falling to 0 where the law is singular; the determinant as a share of `path_det`.
+    /// In the order of [`Margin::ALL`], each falling to 0 where the law is singular; the
+    /// determinant as a share of `path_det`.
     #[inline(always)]
     pub(crate) fn values(&self, path_det: T) -> [T; 7] {
         [self.q3, self.q_b3, -self.lambda, self.kappa, self.path_det / path_det, self.reach, self.cos_phi_squared]

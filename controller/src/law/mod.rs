@@ -27,23 +27,27 @@ pub struct Ahead<T> {
     pub horizon: T,
 }
 
-/// A law in continuous time, with the memory that is its own: a path's nearest point, integrals, an approach under way.
+/// A law in continuous time, with the memory that is its own: a path's nearest point, integrals, an
+/// approach under way.
 ///
-/// What every law shares, ζ, the observers and the commands on their way, is the [`Sampler`](crate::Sampler)'s, which lends it
-/// to one law at a time. Every period it asks the law for an answer with [`evaluate`](Self::evaluate), and where that is what
-/// flies, tells it so with [`accept`](Self::accept). A law that is [restarted](Self::restart) or [joins](Self::join) remembers
-/// nothing of before.
+/// What every law shares, ζ, the observers and the commands on their way, is the
+/// [`Sampler`](crate::Sampler)'s, which lends it to one law at a time. Every period it asks the law
+/// for an answer with [`evaluate`](Self::evaluate), and where that is what flies, tells it so with
+/// [`accept`](Self::accept). A law that is [restarted](Self::restart) or [joins](Self::join)
+/// remembers nothing of before.
 pub trait Law<T: Real> {
     /// The outputs with their derivatives, ξ.
     type Xi: Copy;
 
-    /// Evaluates the law at `ahead` against `disturbance`; the answer is then in [`solution`](Self::solution).
+    /// Evaluates the law at `ahead` against `disturbance`; the answer is then in
+    /// [`solution`](Self::solution).
     fn evaluate(&mut self, vehicle: &Vehicle<T>, ahead: &Ahead<T>, disturbance: &Disturbance<T>);
 
     /// The last answer, all zeros before the first; its command is what it was before the limits.
     fn solution(&self) -> &Solution<T, Self::Xi>;
 
-    /// The last answer flies, if limited as `is_saturated` says: moves on by a `period`, s.
+    /// Tells the law that its last answer flies, limited or not as `is_saturated` says, and moves
+    /// it on by a `period`, s.
     fn accept(&mut self, period: T, is_saturated: bool);
 
     /// Starts at `state`, on the path or reference without an approach.

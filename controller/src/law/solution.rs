@@ -7,13 +7,13 @@ use crate::law::margins::Margins;
 /// What a law answers: the command, and the numbers it came from as telemetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solution<T, X> {
-    /// Thrust (9) and torque (11).
+    /// Thrust (3.5) and torque (7.5).
     pub command: Command<T>,
     /// The compensator's input, m/s⁶.
     pub u_zeta: T,
     /// Outputs and derivatives.
     pub xi: X,
-    /// ν of (13), the wanted highest derivatives of the outputs.
+    /// ν of (5.3), the wanted highest derivatives of the outputs.
     pub nu: [T; 4],
     /// Distances from the singularities.
     pub margins: Margins<T>,

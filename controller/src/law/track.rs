@@ -1,6 +1,7 @@
 //! The trajectory-tracking law of Section V, the baseline: y = (p, ψ) follows a reference in time.
 //!
-//! The same lift and lower with p⁽⁶⁾ = p_ref⁽⁶⁾ − Σ kⱼ (p − p_ref)⁽ʲ⁾. Relative degrees are {6, 6, 6, 2}.
+//! The same lift and lower with p⁽⁶⁾ = p_ref⁽⁶⁾ − Σ kⱼ (p − p_ref)⁽ʲ⁾ (10.1).
+//! Relative degrees are {6, 6, 6, 2}.
 
 use model::{Command, Disturbance, OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;
@@ -16,6 +17,13 @@ use crate::law::{Ahead, Law};
 use crate::ranges::BANDWIDTH;
 
 /// Gains of the tracking law, low order first.
+///
+/// ```
+/// use controller::TrackGains;
+///
+/// assert!(TrackGains::spread(0.8_f32)?.check().is_ok());
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrackGains<T> {
     /// Of the errors of p1, p2, p3 and their derivatives to order 5.
@@ -31,7 +39,8 @@ impl<T: Real> TrackGains<T> {
         TrackGains { position: self.position.map(|row| row.map(T::cast)), yaw: self.yaw.map(T::cast) }
     }
 
-    /// Spread poles to fly with: −1 to −6 times `bandwidth` (1/s), and −2, −3 times it for the yaw.
+    /// Spread poles to fly with: −1 to −6 times `bandwidth` (1/s), and −2, −3 times it for the
+    /// yaw.
     ///
     /// # Errors
     /// `bandwidth` is out of its [range](crate::ranges::BANDWIDTH).
@@ -53,6 +62,17 @@ impl<T: Real> TrackGains<T> {
 }
 
 /// A reference for the payload and the yaw, as Taylor series in time about now.
+///
+/// ```
+/// use controller::{Reference, Series};
+///
+/// // At rest at (0, 0, −10 m), and there the circle of 5 m radius at 1 m/s as it passes (0, 5 m).
+/// let position = [0.0_f32, 0.0, -10.0].map(Series::constant);
+/// let hover = Reference { position, yaw: Series::constant(0.0) };
+/// let circle = Reference::circle(5.0, -10.0, 0.2, 0.0);
+/// assert_eq!(circle.position.map(|p| p.derivative(1)), [1.0, 0.0, 0.0]);
+/// assert_eq!(hover.position[2].value(), circle.position[2].value());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference<T> {
     /// p_ref in N, m, orders 0 to 6.
@@ -62,7 +82,8 @@ pub struct Reference<T> {
 }
 
 impl<T: Real> Reference<T> {
-    /// Section V's circle, y_ref = (r sin a, r cos a, p3, 0) at phase a (rad) with ȧ = `rate`, rad/s.
+    /// Section V's circle, y_ref = (r sin a, r cos a, p3, 0) at phase a (rad) with ȧ = `rate`,
+    /// rad/s.
     pub fn circle(radius: T, p3: T, rate: T, phase: T) -> Self {
         let (sin, cos) = phase.sin_cos();
         let rate_2 = rate * rate;
@@ -175,7 +196,7 @@ impl<T: Real> Track<T> {
         Ok(Self { gains, reference, solution: Solution::default(), approach: Approach::none() })
     }
 
-    /// What is to be tracked, about the coming sample: to be said every period before the step.
+    /// Sets the reference about the coming sample. Call it every period before the step.
     #[inline]
     pub fn set_reference(&mut self, reference: &Reference<T>) {
         self.reference = *reference;
@@ -210,7 +231,8 @@ impl<T: Real> Law<T> for Track<T> {
         self.approach = Approach::none();
     }
 
-    /// The reference is displaced to where the payload is and as fast as it is, and slides home, as a path does.
+    /// The reference is displaced to where the payload is and as fast as it is, and slides home, as
+    /// a path does.
     fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused> {
         let Reference { position: [x, y, z], yaw } = &self.reference;
         let position = Vector3::new(x.value(), y.value(), z.value());

@@ -7,7 +7,15 @@ use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{BENT_HALF_AXIS_A, BENT_HALF_AXIS_B, HEIGHT};
 
-/// h1 = (p1/a)⁴ + (p2/b)⁴ − 1,  h2 = p3 − c0 − A sin(k p1) with A = 0.5 m and k = 0.5 rad/m, along (3).
+/// h1 = (p1/a)⁴ + (p2/b)⁴ − 1, h2 = p3 − c0 − A sin(k p1) with A = 0.5 m and k = 0.5 rad/m,
+/// along (3.2).
+///
+/// ```
+/// use controller::{Bent, Curve};
+///
+/// let path = Bent::new(5.0_f32, 4.0, -10.0)?.at_speed(1.5)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bent<T> {
     per_a: T,

@@ -1,4 +1,4 @@
-//! The paper's horizontal circle (16).
+//! The paper's horizontal circle (15.7).
 
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
@@ -8,13 +8,22 @@ use crate::path::curve::velocity;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{P3, RADIUS};
 
-/// Circle of radius d1 about the n3 axis at height p3 = d2, with the outputs of (16):
+/// Circle of radius d1 about the n3 axis at height p3 = d2, with the paper's outputs (15.7):
 ///
 /// ```text
 /// h1 = p1² + p2² − d1²,   h2 = p3 − d2,   ρ = (−p2, p1, 0)/√(p1² + p2²)
 /// ```
 ///
-/// **h1 is in m², and ρ is the opposite of (3)**, both as printed: seen from above (n3 down), ρ turns from n1 to n2.
+/// **h1 is in m², and ρ is the opposite of (3.2)**, both as printed: seen from above (n3 down), ρ
+/// turns from n1 to n2.
+///
+/// ```
+/// use controller::{Circle, Curve};
+///
+/// // 5 m radius, 10 m above the origin, 1 m/s from n1 to n2; at −1 m/s the other way round.
+/// let path = Circle::new(5.0_f32, -10.0)?.at_speed(1.0)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle<T> {
     radius: T,

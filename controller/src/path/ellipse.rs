@@ -7,7 +7,16 @@ use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{HALF_AXIS_A, HALF_AXIS_B, HEIGHT, SLOPE};
 
-/// h1 = (p1/a)² + (p2/b)² − 1,  h2 = p3 − c0 − c1 p1, both along (3): seen from above (n3 down), ρ turns from n2 to n1.
+/// h1 = (p1/a)² + (p2/b)² − 1, h2 = p3 − c0 − c1 p1, both along (3.2): seen from above (n3
+/// down), ρ turns from n2 to n1.
+///
+/// ```
+/// use controller::{AlongTangent, Curve, Ellipse};
+///
+/// // Half-axes of 6 m and 4 m, 10 m up, sloping by 0.3 m a metre north; nose along it.
+/// let path = Ellipse::new(6.0_f32, 4.0, -10.0, 0.3)?.at_speed(1.5)?.with_yaw(AlongTangent);
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse<T> {
     per_a: T,

@@ -7,7 +7,24 @@ use crate::law::lift::PositionSeries;
 use crate::path::{Formula, Located, SpeedProfile, YawProfile};
 use crate::ranges::{LINEAR_GRADIENT, LINEAR_VALUE, POINTING};
 
-/// A function of position given as a formula. In a [`Formula`] it is a [`SpeedProfile`] (in m/s) and a [`YawProfile`] (in rad).
+/// A function of position given as a formula. In a [`Formula`] it is a [`SpeedProfile`] (in m/s)
+/// and a [`YawProfile`] (in rad).
+///
+/// ```
+/// use controller::{Analytic, Circle, Curve, Formula, ScalarField};
+///
+/// /// 1 m/s, and up to twice as fast in the north.
+/// struct Faster;
+///
+/// impl ScalarField<f32> for Faster {
+///     fn at<A: Analytic<f32>>(&self, [x, _, _]: [A; 3]) -> A {
+///         (x / 5.0).tanh() * 0.5 + 1.5
+///     }
+/// }
+///
+/// let path = Circle::new(5.0_f32, -10.0)?.with_speed(Formula(Faster));
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 pub trait ScalarField<T: Real> {
     /// The value at the point p (N, m).
     fn at<A: Analytic<T>>(&self, p: [A; 3]) -> A;
@@ -57,7 +74,8 @@ impl<T: Real> ScalarField<T> for Linear<T> {
     }
 }
 
-/// atan2(y − p2, x − p1), rad: as a yaw, b1 points towards a vertical line. Not defined on that line.
+/// atan2(y − p2, x − p1), rad: as a yaw, b1 points towards a vertical line. Not defined on that
+/// line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PointingAt<T> {
     x: T,

@@ -6,8 +6,9 @@ use crate::law::lift::PositionSeries;
 use crate::path::curve::{cross, now};
 use crate::path::{Curve, Curved, Located};
 
-/// A curve as the common zero of two formulas; it runs along (3), so exchanging them turns it round. In a [`Formula`] it is a
-/// [`Curve`] with [curvature](Curved): gradients and their derivatives come from dual numbers over series.
+/// A curve as the common zero of two formulas; it runs along (3.2), so exchanging them turns it
+/// round. In a [`Formula`] it is a [`Curve`] with [curvature](Curved): gradients and their
+/// derivatives come from dual numbers over series.
 ///
 /// ```
 /// use controller::{Analytic, Curve, Formula, Implicit};

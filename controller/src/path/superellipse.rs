@@ -7,8 +7,16 @@ use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{HALF_AXIS_A, HALF_AXIS_B, HALF_EXPONENT, HEIGHT, SLOPE};
 
-/// h1 = (p1/a)ⁿ + (p2/b)ⁿ − 1,  h2 = p3 − c0 − c1 p1, n even, along (3) as the ellipse: n = 2 is one, and the larger n, the closer
-/// to a rectangle with rounded corners.
+/// h1 = (p1/a)ⁿ + (p2/b)ⁿ − 1, h2 = p3 − c0 − c1 p1, n even, along (3.2) as the ellipse: n =
+/// 2 is one, and the larger n, the closer to a rectangle with rounded corners.
+///
+/// ```
+/// use controller::{Curve, Superellipse};
+///
+/// // A rounded rectangle of 12 m by 8 m, (p1/6)⁴ + (p2/4)⁴ = 1, level, 10 m up.
+/// let path = Superellipse::new(6.0_f32, 4.0, 2, -10.0, 0.0)?.at_speed(1.0)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Superellipse<T> {
     per_a: T,
@@ -22,7 +30,8 @@ pub struct Superellipse<T> {
 }
 
 impl<T: Real> Superellipse<T> {
-    /// Half-axes `a` and `b` 0.01 to 10⁵ m; `half_exponent` n/2 1 to 10; height `c0` m, |c0| ≤ 10⁵; slope |c1| ≤ 100.
+    /// Half-axes `a` and `b` 0.01 to 10⁵ m; `half_exponent` n/2 1 to 10; height `c0` m, |c0| ≤ 10⁵;
+    /// slope |c1| ≤ 100.
     ///
     /// # Errors
     /// A number is out of its [range](crate::ranges).

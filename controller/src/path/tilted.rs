@@ -7,14 +7,25 @@ use crate::law::lift::PositionSeries;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{COORDINATE, HALF_AXIS_A, HALF_AXIS_B};
 
-/// Ellipse about the centre c in the plane of the orthonormal axes e1 and e2, n = e1 × e2:
+/// Ellipse about the centre c in the plane of the orthonormal axes e1 and e2, n = e1 × e2 (15.2):
 ///
 /// ```text
-/// ξ = e1·(p − c),   η = e2·(p − c),   h1 = (ξ/a)² + (η/b)² − 1,   h2 = −n·(p − c)   (m)
+/// ξ = e1·(p − c),   η = e2·(p − c)
+/// h1 = (ξ/a)² + (η/b)² − 1,   h2 = −n·(p − c) in m
 /// ∇h1 × ∇h2 = 2 (ξ/a² e2 − η/b² e1)
 /// ```
 ///
-/// It runs along (3): right-handed about n, from e1 to e2.
+/// It runs along (3.2): right-handed about n, from e1 to e2.
+///
+/// ```
+/// use controller::{Curve, Tilted, Vector3};
+///
+/// // A circle of 4 m radius that leans north, and a loop that stands upright.
+/// let center = Vector3::new(0.0, 0.0, -10.0_f32);
+/// let leaning = Tilted::circle(center, Vector3::new(-0.3, 0.0, 1.0), 4.0)?.at_speed(1.0)?;
+/// let upright = Tilted::new(center, Vector3::y(), Vector3::x(), 5.0, 3.0)?.at_speed(0.8)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tilted<T> {
     center: Vector3<T>,
@@ -25,10 +36,11 @@ pub struct Tilted<T> {
 }
 
 impl<T: Real> Tilted<T> {
-    /// Half-axes `a` along `major` and `b` across it, 0.01 to 10⁵ m, in the plane through `center` (N, m) across `normal`.
+    /// Half-axes `a` along `major` and `b` across it, 0.01 to 10⁵ m, in the plane through `center`
+    /// (N, m) across `normal`.
     ///
-    /// `normal` and `major` are directions of any length above 10⁻³; `major` counts in so far as it lies in the plane, and must
-    /// stand at least 0.06 rad from `normal`.
+    /// `normal` and `major` are directions of any length above 10⁻³; only the part of `major` in
+    /// the plane counts, and it must stand at least 0.06 rad from `normal`.
     ///
     /// # Errors
     /// A number is out of its [range](crate::ranges).

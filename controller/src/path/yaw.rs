@@ -8,14 +8,23 @@ use crate::ranges::YAW;
 
 /// The yaw ψ_d prescribed along a curve, as a function of position.
 ///
-/// A yaw is defined modulo 2π: any representative will do. A jump of 2π between two samples has no effect in flight, and does
-/// not appear in the derivatives.
+/// A yaw is defined modulo 2π: any representative will do. A jump of 2π between two samples has no
+/// effect in flight, and does not appear in the derivatives.
 pub trait YawProfile<T: Real> {
     /// ψ_d, rad, orders 0 to 2.
     fn yaw(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 3>;
 }
 
 /// ψ_d constant, rad.
+///
+/// ```
+/// use controller::{Circle, Curve, FixedYaw};
+///
+/// // Nose to the east.
+/// let east = FixedYaw::new(core::f32::consts::FRAC_PI_2)?;
+/// let path = Circle::new(5.0_f32, -10.0)?.at_speed(1.0)?.with_yaw(east);
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedYaw<T>(T);
 
@@ -43,7 +52,15 @@ impl<T: Real> YawProfile<T> for FixedYaw<T> {
     }
 }
 
-/// ψ_d = atan2(ρ2, ρ1): b1 along the tangent's horizontal part. Not defined where the tangent is vertical.
+/// ψ_d = atan2(ρ2, ρ1): b1 along the tangent's horizontal part. Not defined where the tangent is
+/// vertical.
+///
+/// ```
+/// use controller::{AlongTangent, Circle, Curve};
+///
+/// let path = Circle::new(5.0_f32, -10.0)?.at_speed(1.0)?.with_yaw(AlongTangent);
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AlongTangent;
 

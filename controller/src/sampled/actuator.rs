@@ -1,11 +1,13 @@
-//! The actuators as the law knows them: what they can apply, a known latency and a known first-order lag.
+//! The actuators as the law knows them: what they can apply, a known latency and a known
+//! first-order lag.
 
 use model::{Command, OutOfRange, Real};
 use nalgebra::Vector3;
 
 use crate::ranges::{MAX_THRUST, MAX_TORQUE, MIN_THRUST};
 
-/// What turns a command into thrust and torque. The law's memory goes on from what it says was applied, so nothing winds up.
+/// What turns a command into thrust and torque. The law's memory goes on from what it says was
+/// applied, so nothing winds up.
 ///
 /// [`ActuatorLimits`] is a box; [`Rotors`](crate::sampled::allocation::Rotors) is a set of rotors.
 pub trait Actuation<T: Real>: Clone {
@@ -28,6 +30,14 @@ pub trait Actuation<T: Real>: Clone {
 }
 
 /// Thrust and each torque, limited on their own.
+///
+/// ```
+/// use controller::{Actuation, ActuatorLimits, Command};
+///
+/// let max_torque = [3.0, 3.0, 0.5_f32];
+/// let limits = ActuatorLimits { min_thrust: 3.0, max_thrust: 60.0, max_torque };
+/// assert_eq!(limits.apply(&Command::of_thrust(80.0)).thrust, 60.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorLimits<T> {
     /// Least thrust, N.
@@ -39,7 +49,7 @@ pub struct ActuatorLimits<T> {
 }
 
 impl<T: Real> ActuatorLimits<T> {
-    /// None to speak of: ±10⁶ N and N·m.
+    /// Practically none: ±10⁶ N and N·m.
     #[must_use]
     pub fn none() -> Self {
         let far = T::lit(1e6);
@@ -88,7 +98,8 @@ pub const MAX_DELAY: usize = 31;
 /// A power of two, so that a count that wraps keeps its place.
 const SLOTS: usize = MAX_DELAY + 1;
 
-/// A delay line of whole periods, then a first-order lag: what the commands do on their way to thrust and torque.
+/// A delay line of whole periods, then a first-order lag (11.6): the commands' way to thrust and
+/// torque.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Actuators<T> {
     /// A ring of the last commands; `newest` counts them, and the last one stands there.
@@ -99,7 +110,8 @@ pub(crate) struct Actuators<T> {
     waiting: usize,
     /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
     decay: T,
-    /// Share of a command's step that acts at once: 1 without lag, 0 with one. A number, so that no period branches.
+    /// Share of a command's step that acts at once: 1 without lag, 0 with one. A number, so that no
+    /// period branches.
     at_once: T,
     /// Share of the newest command in the mean over the law's look ahead.
     share: T,
@@ -113,14 +125,14 @@ pub(crate) struct Actuators<T> {
 impl<T: Real> Actuators<T> {
     /// With `latency` (rounded to whole periods) and `lag`, s; the law looks `horizon` s ahead.
     pub(crate) fn new(period: T, latency: T, lag: T, horizon: T, command: Command<T>) -> Result<Self, OutOfRange<T>> {
-        // A thousandth of a period is rounding's.
+        // A thousandth of a period is left for rounding.
         OutOfRange::within("latency", latency, T::zero(), period * T::lit(MAX_DELAY as f64 + 1e-3))?;
         let periods = latency / period + T::lit(0.5);
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
         let has_lag = lag > T::zero();
         let (decay, at_once) = if has_lag { ((-period / lag).exp(), T::zero()) } else { (T::zero(), T::one()) };
-        // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then the line's commands pass from
-        // the applied to the newest.
+        // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then
+        // the line's commands pass from the applied to the newest.
         let acting = horizon - latency;
         let settled = if has_lag { lag * (T::one() - (-acting / lag).exp()) } else { T::zero() };
         let share =
@@ -141,7 +153,7 @@ impl<T: Real> Actuators<T> {
         })
     }
 
-    /// `command` has been on for long.
+    /// As if `command` had been applied for long.
     pub(crate) fn reset(&mut self, command: Command<T>) {
         if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
             *slot = command;
@@ -170,8 +182,8 @@ impl<T: Real> Actuators<T> {
         self.line.get(self.newest.wrapping_sub(before) % SLOTS).copied().unwrap_or(self.applied)
     }
 
-    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is known before the coming command:
-    /// nothing without latency and lag.
+    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is
+    /// known before the coming command: nothing without latency and lag.
     #[inline]
     pub(crate) fn drift(&self) -> &Command<T> {
         &self.drift

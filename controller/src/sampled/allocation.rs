@@ -1,20 +1,23 @@
 //! Thrust and torque to rotors: which speeds give them, and what is given up when the rotors can't.
 //!
-//! Rotor i at speed Ω gives the force f = k_T Ω² along −b3 and the drag torque ±k_Q Ω² about b3 (down: a rotor that turns counter-clockwise
-//! seen from above drags the body clockwise, which is positive), so with its place (x, y) from the centre of mass
+//! Rotor i at speed Ω gives the force f = k_T Ω² along −b3 and the drag torque ±k_Q Ω² about
+//! b3 (down: a rotor that turns counter-clockwise seen from above drags the body clockwise, which
+//! is positive), so with its place (x, y) from the centre of mass
 //!
 //! ```text
-//! (T, τ) = B f,   column i of B = (1, −y, x, ±k_Q/k_T),   f = B⁺ (T, τ)
+//! (T, τ) = B f,   column i of B = (1, −y, x, ±k_Q/k_T),   f = B⁺ (T, τ)        (16.1)
 //! ```
 //!
-//! with the pseudo-inverse B⁺ taken once. Where a rotor would leave its range, what is applied keeps, in this order,
+//! with the pseudo-inverse B⁺ taken once. Where a rotor would leave its range, what is applied
+//! keeps, in this order,
 //!
-//! 1. roll and pitch torque, as much of them (in their proportion) as the rotors have at the thrust that leaves them most room,
+//! 1. roll and pitch torque, as much of them (in their proportion) as the rotors have at the thrust
+//!    that leaves them most room,
 //! 2. then thrust, the nearest that roll and pitch allow,
 //! 3. then yaw torque, as much as is left.
 //!
-//! A vehicle that keeps these can still be righted, then kept in the air, then turned. There is no iteration: the cost is the same for every
-//! command.
+//! A vehicle that keeps these can still be righted, then kept in the air, then turned. There is no
+//! iteration: the cost is the same for every command.
 
 // Matrices are indexed over compile-time bounds.
 #![allow(clippy::indexing_slicing)]
@@ -39,8 +42,9 @@ pub struct RotorParams<T> {
 }
 
 impl<T: Real> RotorParams<T> {
-    /// Rotors that hover `weight` (N), shared by `rotors` of them, at half of their largest force and at 600 rad/s, with a drag of 16 mm of
-    /// their thrust and an idle of a tenth of the largest speed. A stand-in for a measured propeller of that size.
+    /// Rotors that hover `weight` (N), shared by `rotors` of them, at half of their largest force
+    /// and at 600 rad/s, with a drag of 16 mm of their thrust and an idle of a tenth of the largest
+    /// speed. A stand-in for a measured propeller of that size.
     pub fn typical(weight: T, rotors: usize) -> Self {
         let hover_speed = T::lit(600.0);
         let thrust_coefficient = weight / (T::lit(rotors as f64) * hover_speed * hover_speed);
@@ -62,6 +66,17 @@ impl<T: Real> RotorParams<T> {
 }
 
 /// Where a rotor is and how it turns.
+///
+/// ```
+/// use controller::{Place, RotorParams, Rotors};
+///
+/// let rotor = RotorParams::typical(29.4_f32, 4);
+/// let place = |x, y| Place { x, y, counter_clockwise: x * y > 0.0 };
+/// // Longer than wide.
+/// let places = [place(0.3, 0.2), place(-0.3, -0.2), place(0.3, -0.2), place(-0.3, 0.2)];
+/// let rotors = Rotors::new(rotor, &places)?;
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place<T> {
     /// Along b1 (forward) from the centre of mass, m.
@@ -86,29 +101,50 @@ pub struct Allocation<T, const N: usize> {
 }
 
 /// N rotors, checked.
+///
+/// ```
+/// use controller::{Command, RotorParams, Rotors};
+///
+/// // A quadrotor in X, 0.25 m from the centre to each axis.
+/// let rotor = RotorParams {
+///     thrust_coefficient: 2e-5_f32,
+///     torque_coefficient: 3.2e-7,
+///     min_speed: 80.0,
+///     max_speed: 900.0,
+/// };
+/// let rotors = Rotors::quad_x(rotor, 0.25)?;
+/// let allocation = rotors.allocate(&Command::of_thrust(29.4));
+/// assert!(!allocation.saturated);
+/// assert!(allocation.speeds.iter().all(|speed| (speed - 606.2).abs() < 0.1));
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rotors<T, const N: usize> {
     /// A row of B⁺ a rotor: its force, N, per newton of thrust and newton metre of torque.
     inverse: [[T; 4]; N],
     /// N per newton of its force: the first column's reciprocals.
     thrust_per_force: [T; N],
-    /// Force, N, that each rotor has left either way for roll and pitch, at the thrust where that is largest.
+    /// Force, N, that each rotor has left either way for roll and pitch, at the thrust where that
+    /// is largest.
     room: [T; N],
     least_force: T,
     largest_force: T,
-    /// Beyond what the rotors can give: commands are cut to this first, so that no product overflows.
+    /// Beyond what the rotors can give: commands are cut to this first, so that no product
+    /// overflows.
     bounds: [T; 4],
     per_thrust_coefficient: T,
 }
 
-/// Rows of unit length span a volume less than this only when, to f32's rounding, one of them depends on the others.
+/// Rows of unit length span a volume less than this only when, to f32's rounding, one of them
+/// depends on the others.
 const LEAST_PIVOT: f64 = 1e-4;
 
 impl<T: Real, const N: usize> Rotors<T, N> {
     /// Rotors at `places`, their axes along b3.
     ///
     /// # Errors
-    /// As [`from_matrix`](Self::from_matrix), or a place is out of [its range](crate::ranges::ROTOR_PLACE).
+    /// As [`from_matrix`](Self::from_matrix), or a place is out of [its
+    /// range](crate::ranges::ROTOR_PLACE).
     pub fn new(rotor: RotorParams<T>, places: &[Place<T>; N]) -> Result<Self, OutOfRange<T>> {
         for place in places {
             for (range, along) in ROTOR_PLACE.iter().zip([place.x, place.y]) {
@@ -125,12 +161,13 @@ impl<T: Real, const N: usize> Rotors<T, N> {
         Self::from_matrix(rotor, &effect)
     }
 
-    /// Rotors that give thrust and torque (T, τ) = B f, by the matrix B = `effect` itself: for tilted axes, or a measured one. Each rotor must
-    /// have a part in thrust alone (the first column of B⁺ positive), as in every configuration where rotors lift.
+    /// Rotors that give thrust and torque (T, τ) = B f, by the matrix B = `effect` itself: for
+    /// tilted axes, or a measured one. Each rotor must have a part in thrust alone (the first
+    /// column of B⁺ positive), as in every configuration where rotors lift.
     ///
     /// # Errors
-    /// A number of `rotor` or `effect` is out of range, the rotors do not act on thrust and each torque apart, or a rotor has no
-    /// share of the thrust or no room for torque.
+    /// A number of `rotor` or `effect` is out of range, the rotors do not act on thrust and each
+    /// torque apart, or a rotor has no share of the thrust or no room for torque.
     pub fn from_matrix(rotor: RotorParams<T>, effect: &[[T; N]; 4]) -> Result<Self, OutOfRange<T>> {
         rotor.check()?;
         for x in effect.iter().flatten() {
@@ -139,7 +176,8 @@ impl<T: Real, const N: usize> Rotors<T, N> {
         let inverse = pseudo_inverse(effect)?;
         let force = |speed: T| rotor.thrust_coefficient * speed * speed;
         let (least_force, largest_force) = (force(rotor.min_speed), force(rotor.max_speed));
-        // At thrust t rotor i has force c_i t, and the smaller of c_i t − least and largest − c_i t as room.
+        // At thrust t rotor i has force c_i t, and the smaller of c_i t − least and largest − c_i t
+        // as room.
         let shares = inverse.map(|[c, ..]| c);
         for &share in &shares {
             OutOfRange::check("share of thrust", share, 1e-3, 1e3)?;
@@ -226,8 +264,8 @@ impl<T: Real, const N: usize> Rotors<T, N> {
 }
 
 impl<T: Real, const N: usize> Rotors<T, N> {
-    /// The speeds, rad/s, of a command as it was [applied](Actuation::apply): those that [`allocate`](Self::allocate) finds for it, without
-    /// looking for what has to be given up.
+    /// The speeds, rad/s, of a command as it was [applied](Actuation::apply): those that
+    /// [`allocate`](Self::allocate) finds for it, without looking for what has to be given up.
     #[inline]
     pub fn speeds(&self, applied: &Command<T>) -> [T; N] {
         let Command { thrust, torque } = applied;
@@ -239,7 +277,8 @@ impl<T: Real, const N: usize> Rotors<T, N> {
 }
 
 impl<T: Real> Rotors<T, 4> {
-    /// A quadrotor with arms of `arm` m, its first rotor in front; spins alternate around it, counter-clockwise first.
+    /// A quadrotor with arms of `arm` m, its first rotor in front; spins alternate around it,
+    /// counter-clockwise first.
     ///
     /// # Errors
     /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
@@ -247,8 +286,8 @@ impl<T: Real> Rotors<T, 4> {
         Self::new(rotor, &ring(arm, 0.0)?)
     }
 
-    /// A quadrotor with arms of `arm` m at 45° to its axes: front right, rear right, rear left, front left; spins alternate,
-    /// counter-clockwise first.
+    /// A quadrotor with arms of `arm` m at 45° to its axes: front right, rear right, rear left,
+    /// front left; spins alternate, counter-clockwise first.
     ///
     /// # Errors
     /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
@@ -258,7 +297,8 @@ impl<T: Real> Rotors<T, 4> {
 }
 
 impl<T: Real> Rotors<T, 6> {
-    /// A hexarotor with arms of `arm` m, its first rotor in front; spins alternate, counter-clockwise first.
+    /// A hexarotor with arms of `arm` m, its first rotor in front; spins alternate,
+    /// counter-clockwise first.
     ///
     /// # Errors
     /// As [`new`](Self::new), or `arm` is out of [its range](crate::ranges::ROTOR_ARM).
@@ -400,7 +440,8 @@ mod tests {
             } else {
                 free += 1;
             }
-            // Priorities: yaw is not the reason to give up thrust, nor either to give up roll and pitch.
+            // Priorities: yaw is not the reason to give up thrust, nor either to give up roll and
+            // pitch.
             let alone = rotors.allocate(&command(wanted.thrust, [wanted.torque.x, wanted.torque.y, 0.0])).applied;
             assert!(
                 (alone.thrust - applied.thrust).abs() < 1e-12
@@ -429,7 +470,8 @@ mod tests {
 
     #[test]
     fn quad_x_is_the_known_mixer() {
-        // f = (T ∓ τ1/l ± τ2/l ± τ3/k)/4 with l = arm/√2, for front right, rear right, rear left, front left.
+        // f = (T ∓ τ1/l ± τ2/l ± τ3/k)/4 with l = arm/√2, for front right, rear right, rear left,
+        // front left.
         let rotor = rotor();
         let rotors = Rotors::quad_x(rotor, 0.25).unwrap();
         let (l, k) = (0.25 / 2.0_f64.sqrt(), rotor.torque_coefficient / rotor.thrust_coefficient);
@@ -470,7 +512,8 @@ mod tests {
         assert_eq!(refused(RotorParams { max_speed: f64::INFINITY, ..rotor() }, &quad), "max_speed");
         assert_eq!(refused(rotor(), &quad.map(|p| Place { y: 0.0, ..p })), "effect on roll");
         assert_eq!(refused(rotor(), &quad.map(|p| Place { x: f64::NAN, ..p })), "x");
-        // All turning one way, yaw is thrust's slave; and on one diagonal line, pitch is roll's.
+        // Rotors that all turn one way give no yaw without thrust; on one diagonal, no pitch
+        // without roll.
         assert_eq!(
             refused(rotor(), &quad.map(|p| Place { counter_clockwise: true, ..p })),
             "rank of the rotors' effect"

@@ -15,7 +15,21 @@ use crate::sampled::sampler::{Sampler, Sampling};
 
 /// A law and the sampled memory it flies with.
 ///
-/// This is the bare law: near its singularities it answers what it must. [`Supervisor`](crate::Supervisor) is total.
+/// This is the bare law: near its singularities it answers what it must.
+/// [`Supervisor`](crate::Supervisor) is total.
+///
+/// ```
+/// use controller::{Command, Reference, Sampling, State, TrackGains, Tracker};
+/// use controller::{Vector3, Vehicle, VehicleParams};
+///
+/// let vehicle = Vehicle::new(VehicleParams::<f32>::paper())?;
+/// let mut tracker = Tracker::new(vehicle, TrackGains::spread(1.0)?, Sampling::every(0.002))?;
+/// let state = State::at_rest(Vector3::new(0.0, 5.0, -10.0));
+/// tracker.take_over(&state, Command::of_thrust(vehicle.hover_thrust()))?;
+/// let solution = tracker.track(&state, &Reference::circle(5.0, -10.0, 0.2, 0.0));
+/// assert!(solution.command.is_finite());
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Controller<T, L, A = ActuatorLimits<T>> {
     law: L,
@@ -89,29 +103,31 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         Ok(self)
     }
 
-    /// Starts from a stated ζ with integrals and disturbances at zero. Hover is ζ = 0. The first step does so if nothing else did.
+    /// Starts from a stated ζ with integrals and disturbances at zero. Hover is ζ = 0. The first
+    /// step does so if nothing else did.
     ///
     /// # Errors
-    /// A part of `state` or of `zeta` is no number or out of any range; nothing has changed.
+    /// A part of `state` or of `zeta` is not finite or out of any range; nothing has changed.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
         self.sampler.start(state, zeta)?;
         self.begin(state);
         Ok(())
     }
 
-    /// Takes over from whatever applied `applied` until now, without a bump: thrust goes on from there with the payload's vertical
-    /// acceleration, and the torque's step against it fades. Integrals and disturbances start at zero.
+    /// Takes over from whatever applied `applied` until now, without a bump: thrust goes on from
+    /// there with the payload's vertical acceleration, and the torque's step against it fades.
+    /// Integrals and disturbances start at zero.
     ///
     /// # Errors
-    /// A part of `state` or of `applied` is no number or out of any range; nothing has changed.
+    /// A part of `state` or of `applied` is not finite or out of any range; nothing has changed.
     pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
         self.sampler.take_over(state, applied)?;
         self.begin(state);
         Ok(())
     }
 
-    /// Joins the path from afar at `pace`: [takes over](Self::take_over), and slides the path from where the payload is to where it
-    /// belongs.
+    /// Joins the path from afar at `pace`: [takes over](Self::take_over), and slides the path from
+    /// where the payload is to where it belongs.
     ///
     /// # Errors
     /// As [`take_over`](Self::take_over), or no point of the path was found; nothing has changed.

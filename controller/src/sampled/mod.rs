@@ -1,4 +1,5 @@
-//! What stands between a law in continuous time and a computer with actuators: a period, what is applied, what disturbs.
+//! What stands between a law in continuous time and a computer with actuators: a period, what is
+//! applied, what disturbs.
 
 pub(crate) mod actuator;
 pub(crate) mod allocation;

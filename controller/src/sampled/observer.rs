@@ -1,23 +1,25 @@
 //! What the model leaves out, and the observers that find it.
 //!
-//! The law stands on model (1), in which nothing corrects ζ1 = v̇3: wind, a wrong mass or a weak rotor make it miss by decimetres.
-//! Extended by an unknown specific force d on the payload, an unknown acceleration δ of the rod's direction and an
-//! unknown torque, all slow, the model is
+//! Nothing in the law corrects ζ1 = v̇3: wind, a wrong mass or a weak rotor make it miss by
+//! decimetres. Extended by an unknown specific force d on the payload, an unknown acceleration δ of
+//! the rod's direction and an unknown torque, the model is
 //!
 //! ```text
-//! v̇ = g e3 + d + λ q,   q̈ = κ b3 + c λ q + δ,   κ (b3·q) = −(|q̇|² + c λ + δ·q),   J ω̇ = J ω × ω + τ + τ_d
+//! v̇ = g e3 + d + λ q,   q̈ = κ b3 + c λ q + δ,   κ (b3·q) = −(|q̇|² + c λ + δ·q)
+//! J ω̇ = J ω × ω + τ + τ_d                                                     (12.1)
 //! ```
 //!
-//! which can stand for wind on either body, wrong masses and wrong thrust alike. Seen from a moving payload none of these is
-//! constant, so d and δ are estimated together with their rates, by three states per axis. A torque mostly originates on the
-//! vehicle; two states suffice:
+//! which can stand for wind on either body, wrong masses and wrong thrust alike. Seen from a moving
+//! payload none of these is constant, so d and δ are estimated together with their rates, by three
+//! states per axis. A torque mostly originates on the vehicle; two states suffice:
 //!
 //! ```text
 //! v̂˙ = model + d̂ + 3 o e,   d̂˙ = r̂ + 3 o² e,   r̂˙ = o³ e,   e = v − v̂
-//! ω̂˙ = model + τ̂/J + 2 o e,   τ̂˙ = J o² e,   e = ω − ω̂
+//! ω̂˙ = model + J⁻¹ τ̂ + 2 o e,   τ̂˙ = J o² e,   e = ω − ω̂           (12.3)
 //! ```
 //!
-//! discretized with all poles at e^(−o h). A force that grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂ is kept
+//! discretized with gains for poles at e^(−o h), (12.4), near which they are (12.5). A force that
+//! grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂ is kept
 //! orthogonal to q.
 
 use model::{Disturbance, OutOfRange, Real, State, Vehicle};
@@ -25,7 +27,16 @@ use nalgebra::Vector3;
 
 use crate::ranges::{PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, TORQUE_BANDWIDTH, TORQUE_BOUND};
 
-/// Observer bandwidths o, rad/s, and the bounds of what they may find. A bandwidth of zero switches an observer off.
+/// Observer bandwidths o, rad/s, and the bounds of what they may find. A bandwidth of zero switches
+/// an observer off.
+///
+/// ```
+/// use controller::ObserverParams;
+///
+/// // As a rule; and slower where the state is noisy, with nothing to be found of torque.
+/// let usual = ObserverParams::with_bandwidth(8.0_f32);
+/// let calm = ObserverParams { torque_bandwidth: 0.0, ..ObserverParams::with_bandwidth(4.0_f32) };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObserverParams<T> {
     /// Of d̂, rad/s.
@@ -84,19 +95,21 @@ impl<T: Real> ObserverParams<T> {
     }
 }
 
-/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and, of a force, its rate.
+/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and, of a
+/// force, its rate.
 #[derive(Clone, Copy, Debug)]
 struct Channel<T> {
     velocity_gain: T,
     disturbance_gain: T,
     rate_gain: T,
     bound_squared: T,
-    /// The velocity predicted up to the after end of the running period's trapezoid.
+    /// The velocity predicted with the first half of the running period's trapezoid.
     predicted: Vector3<T>,
 }
 
 impl<T: Real> Channel<T> {
-    /// Of a disturbance that grows: three poles at p = e^(−o h) by the gains 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 − p)³/h².
+    /// Of a disturbance that grows, by the gains (12.4), 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 −
+    /// p)³/h² with p = e^(−o h).
     fn growing(bandwidth: T, bound: T, period: T) -> Self {
         let pole = (-bandwidth * period).exp();
         let gap = (T::one() - pole) / period;
@@ -109,7 +122,7 @@ impl<T: Real> Channel<T> {
         }
     }
 
-    /// Of one that stays: two, by 1 − p² and (1 − p)²/h.
+    /// Of one that stays, by 1 − p² and (1 − p)²/h.
     fn steady(bandwidth: T, bound: T, period: T) -> Self {
         let pole = (-bandwidth * period).exp();
         let gap = T::one() - pole;
@@ -122,8 +135,9 @@ impl<T: Real> Channel<T> {
         }
     }
 
-    /// Ends the running period with the acceleration just `before` the sample, corrects the velocity by what was `measured`, and
-    /// begins the next with the one just `after` it. Returns the innovation.
+    /// Ends the running period with the acceleration just `before` the sample, corrects the
+    /// velocity by what was `measured`, and begins the next with the one just `after` it. Returns
+    /// the innovation.
     #[inline]
     fn correct(
         &mut self,
@@ -138,7 +152,8 @@ impl<T: Real> Channel<T> {
         innovation
     }
 
-    /// [Corrects](Self::correct) the velocity, a force and its `rate`, and moves the force on by a `period`.
+    /// [Corrects](Self::correct) the velocity, a force and its `rate`, and moves the force on by a
+    /// `period`.
     #[inline]
     fn grow(
         &mut self,
@@ -197,8 +212,8 @@ impl<T: Real> Observer<T> {
         self.restart(state);
     }
 
-    /// Starts from `state`, with the estimates as they are. The half period's acceleration that this leaves out is gone within the
-    /// observers' time, and below a hundredth of an m/s².
+    /// Starts from `state`, with the estimates as they are. The half period's acceleration that
+    /// this leaves out is gone within the observers' time, and below a hundredth of an m/s².
     #[inline(never)]
     pub(crate) fn restart(&mut self, state: &State<T>) {
         self.payload.predicted = state.velocity;
@@ -211,11 +226,12 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Corrects d̂ by the sampled payload's `velocity`. `before`: the model's acceleration just before the sample; `after`: just
-    /// after it.
+    /// Corrects d̂ by the sampled payload's `velocity`. `before`: the model's acceleration just
+    /// before the sample; `after`: just after it.
     ///
-    /// Commands step at samples, and the model is affine in them. The last sample's `after` could not know its step, so this
-    /// sample's `before` makes it good: the trapezoid over the last period has both of its ends. So it is with δ̂ and τ̂_d.
+    /// Commands step at samples, and the model is affine in them. The last sample's `after` could
+    /// not know its step, so this sample's `before` makes it good: the trapezoid over the last
+    /// period has both of its ends. So it is with δ̂ and τ̂_d.
     #[inline]
     pub(crate) fn correct_payload(&mut self, velocity: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) {
         let Disturbance { payload, payload_rate, .. } = &mut self.estimate;

@@ -1,9 +1,11 @@
-//! What stands between a law in continuous time and a computer: the compensator's ζ, the look ahead, the actuators' model
-//! and the disturbance observers, stepped once a control period.
+//! What stands between a law in continuous time and a computer: the compensator's ζ, the look
+//! ahead, the actuators' model and the disturbance observers, stepped once a control period.
 //!
-//! Thrust and torque are held between samples, so a law evaluated at the sample acts half a period late, and every error is first order
-//! in the period. Here it is evaluated for the middle of the coming hold, at the state and ζ predicted from what is being applied, which
-//! makes it second order. A known latency and a known rotor lag are absorbed by the same prediction: it looks that much further.
+//! Thrust and torque are held between samples, so a law evaluated at the sample acts half a period
+//! late, and every error is first order in the period. Here it is evaluated for the middle of the
+//! coming hold, at the state and ζ predicted from what is being applied, which makes it second
+//! order. A known latency and a known rotor lag are absorbed by the same prediction, which looks
+//! that much further: (11.1) to (11.4).
 
 use model::{
     Command, Disturbance, OutOfRange, Real, State, Vehicle,
@@ -20,15 +22,24 @@ use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
 use crate::sampled::observer::{Observer, ObserverParams};
 
 /// When the law is called and when its command acts.
+///
+/// ```
+/// use controller::Sampling;
+///
+/// // 500 Hz, states 10 ms old when their command begins to act, motors of 30 ms.
+/// let sampling = Sampling { latency: 0.01, rotor_lag: 0.03, ..Sampling::every(0.002_f32) };
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sampling<T> {
     /// Control period h, s.
     pub period: T,
-    /// Known time from the state's sample to its command's start, s, at most [`MAX_DELAY`](crate::MAX_DELAY) periods.
+    /// Known time from the state's sample to its command's start, s, at most
+    /// [`MAX_DELAY`](crate::MAX_DELAY) periods.
     pub latency: T,
     /// Known time constant of the rotors' first-order lag, s.
     pub rotor_lag: T,
-    /// Evaluate the law for when its command acts: `latency` + `rotor_lag` + h/2 ahead. Off, it is evaluated at the sample.
+    /// Evaluate the law for when its command acts: `latency` + `rotor_lag` + h/2 ahead. Off, it is
+    /// evaluated at the sample.
     pub look_ahead: bool,
 }
 
@@ -66,10 +77,12 @@ impl<T: Real> Sampling<T> {
     }
 }
 
-/// Time constant with which thrust and torque pass from what was applied before a take-over to the law's, s.
+/// Time constant with which thrust and torque pass from what was applied before a take-over to the
+/// law's, s.
 const TAKE_OVER: f64 = 0.05;
 
-/// What a sampled law remembers, whatever law it is: ζ, the commands on their way, the observers. It is lent to one law at a time.
+/// What a sampled law remembers, whatever law it is: ζ, the commands on their way, the observers.
+/// It is lent to one law at a time.
 #[derive(Clone, Debug)]
 pub struct Sampler<T, A = ActuatorLimits<T>> {
     memory: Memory<T>,
@@ -82,8 +95,8 @@ struct Memory<T> {
     period: T,
     half_hold: T,
     horizon: T,
-    /// ζ when the coming command begins to act: `horizon` − `half_hold` after the sample. What lies between needs no
-    /// prediction, since the compensator is the law's own.
+    /// ζ when the coming command begins to act: `horizon` − `half_hold` after the sample. What lies
+    /// between needs no prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
     /// The next command's step against what is being applied is to fade.
@@ -134,7 +147,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         Ok(Sampler { memory: self.memory, actuation })
     }
 
-    /// Changes what the actuators can apply, in flight too, where less than hover's thrust may be the truth.
+    /// Changes what the actuators can apply, in flight too, where less than hover's thrust may be
+    /// the truth.
     pub(crate) fn set_actuation(&mut self, actuation: A) -> Result<(), OutOfRange<T>> {
         actuation.check()?;
         self.actuation = actuation;
@@ -161,14 +175,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         applied
     }
 
-    /// Starts from a stated ζ; until the first command the thrust is (9) and the torque zero.
+    /// Starts from a stated ζ; until the first command the thrust is (3.5) and the torque zero.
     pub(crate) fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
         state.check().map_err(Refused::State)?;
         if !zeta.iter().all(|z| z.is_finite()) {
             return Err(Refused::Zeta);
         }
         let thrust = lift(&self.memory.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.memory.vehicle);
-        // At a singularity (9) says nothing, and what can't be applied was not.
+        // At a singularity (3.5) has no value, and what can't be applied was not applied.
         let thrust = if thrust.is_finite() { thrust } else { self.memory.vehicle.hover_thrust() };
         let applied = self.actuation.apply(&Command::of_thrust(thrust));
         self.reset(state, applied);
@@ -179,7 +193,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         Ok(())
     }
 
-    /// Takes over from whatever applied `applied` until now, with the ζ that continues it and nothing known of disturbances.
+    /// Takes over from whatever applied `applied` until now, with the ζ (11.8) that continues it
+    /// and nothing known of disturbances.
     pub(crate) fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
         state.check().map_err(Refused::State)?;
         if !applied.is_finite() {
@@ -195,7 +210,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.carry_on(state);
     }
 
-    /// Continues what is being applied, with the ζ that does. The first command's step against it fades.
+    /// Continues what is being applied, with the ζ that does. The first command's step against it
+    /// fades.
     #[inline(never)]
     pub(crate) fn carry_on(&mut self, state: &State<T>) {
         let thrust = self.memory.actuators.applied().thrust;
@@ -216,7 +232,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.send(&last)
     }
 
-    /// Limits and sends a command that is no law's.
+    /// Limits and sends a command that does not come from a law.
     #[inline(never)]
     pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
         let applied = self.actuation.apply(command);
@@ -234,7 +250,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         &self.actuation
     }
 
-    /// After periods without a usable state: the observers start from `state`, with their estimates.
+    /// After periods without a usable state: the observers start from `state`, with their
+    /// estimates.
     pub(crate) fn resume(&mut self, state: &State<T>) {
         self.memory.observer.restart(state);
     }
@@ -271,8 +288,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
     ///
-    /// If the limit changed the thrust, ζ1 is corrected by (9) so that it is the vertical acceleration under the thrust actually
-    /// applied. `alignment` = (q·e3)(q·b3).
+    /// If the limit changed the thrust, ζ1 is corrected by (11.7) so that it is the vertical
+    /// acceleration under the thrust actually applied. `alignment` = (q·e3)(q·b3).
     #[inline(never)]
     pub(crate) fn commit(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
         if self.memory.is_softening {

@@ -16,7 +16,8 @@ const BANDWIDTH: f32 = 1.0;
 /// Of h1, h2, h3: far below what those poles allow.
 const INTEGRAL: [f32; 3] = [100.0, 100.0, 10.0];
 
-/// A supervised path-following law as it flies, observers, guard and limits on, and where its states are drawn.
+/// A supervised path-following law as it flies, observers, guard and limits on, and where its
+/// states are drawn.
 pub struct Following<P> {
     supervisor: Supervisor<f32, Follow<f32, P>>,
     /// Draws a point of the path.
@@ -111,8 +112,9 @@ impl Case for Tracking {
     }
 }
 
-/// A flyable state around `point`: 1 m and 1.5 m/s off, rod and attitude some 0.4 rad from upright, any yaw.
-fn state_near(point: Vector3<f32>, random: &mut Random) -> State<f32> {
+/// A flyable state around `point`: 1 m and 1.5 m/s off, rod and attitude some 0.4 rad from upright,
+/// any yaw.
+pub(crate) fn state_near(point: Vector3<f32>, random: &mut Random) -> State<f32> {
     let rod = unit(Vector3::new(0.0, 0.0, 1.0) + random.vector(0.4));
     let swing = random.vector(0.6);
     let thrust_axis = unit(Vector3::new(0.0, 0.0, 1.0) + random.vector(0.4));
@@ -132,7 +134,7 @@ fn unit(vector: Vector3<f32>) -> Vector3<f32> {
 }
 
 /// ζ1 well away from free fall, and as much of its derivatives.
-fn zeta(random: &mut Random) -> [f32; 4] {
+pub(crate) fn zeta(random: &mut Random) -> [f32; 4] {
     [1.0, 1.0, 2.0, 4.0].map(|amplitude| random.around_zero(amplitude))
 }
 
@@ -140,7 +142,7 @@ fn digest_command(command: &Command<f32>, digest: &mut Digest) {
     [command.thrust].iter().chain(&command.torque).for_each(|&number| digest.take(number));
 }
 
-fn digest_solution<X>(solution: &Solution<f32, X>, digest: &mut Digest) {
+pub(crate) fn digest_solution<X>(solution: &Solution<f32, X>, digest: &mut Digest) {
     digest_command(&solution.command, digest);
     [solution.u_zeta].into_iter().chain(solution.nu).for_each(|number| digest.take(number));
 }

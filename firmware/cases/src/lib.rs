@@ -2,11 +2,13 @@
 //! on the host, whose digest of all commands the target's must equal.
 #![no_std]
 
+mod alone;
 mod digest;
 mod laws;
 mod paths;
 mod random;
 
+use alone::Alone;
 use laws::{Following, Tracking};
 
 pub use digest::Digest;
@@ -45,6 +47,8 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     let joining = |path| Following::new(path, paths::on_circle).map(Following::joining);
     visitor.visit("joining", paths::circle().and_then(joining));
     visitor.visit("track", Tracking::new());
+    visitor.visit("law-circle", paths::circle().and_then(|path| Alone::new(path, paths::on_circle)));
+    visitor.visit("law-bent", paths::bent().and_then(|path| Alone::new(path, paths::on_bent)));
 }
 
 /// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after

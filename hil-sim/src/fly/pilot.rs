@@ -1,4 +1,5 @@
-//! Either law of the controller behind one face, in either scalar, with its numbers as f64 for recording.
+//! Either law of the controller behind one face, in either scalar, with its numbers as f64 for
+//! recording.
 
 use controller::{
     Command, Disturbance, Fault, Follower, Margins, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle,
@@ -7,7 +8,8 @@ use controller::{
 use crate::describe::course::{ReferenceSpec, Route};
 use crate::describe::scenario::{ControllerSpec, Law};
 
-/// Whatever answers states with commands: a law in this program, or a target at the other end of a link.
+/// Whatever answers states with commands: a law in this program, or a target at the other end of a
+/// link.
 pub trait Answers {
     /// Starts from a stated ζ, with integrals at zero.
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]);
@@ -15,7 +17,8 @@ pub trait Answers {
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>);
 
-    /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there will be no more.
+    /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there
+    /// will be no more.
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision>;
 }
 
@@ -40,7 +43,8 @@ pub struct Decision {
     pub fault: Option<Fault>,
     /// What the observers hold; of a target at the other end of a link it does not come.
     pub disturbance: Option<Disturbance<f64>>,
-    /// The law's own numbers, where it was asked; of a target they come with the samples that are logged.
+    /// The law's own numbers, where it was asked; of a target they come with the samples that are
+    /// logged.
     pub telemetry: Option<Telemetry>,
 }
 
@@ -89,7 +93,8 @@ impl<T: Real> Pilot<T> {
     /// The controller that `spec` describes, at hover.
     ///
     /// # Errors
-    /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains unstable.
+    /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains
+    /// unstable.
     pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
         let vehicle = Vehicle::new(spec.vehicle.cast())?;
         let sampling = spec.sampling().cast();

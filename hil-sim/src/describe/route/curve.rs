@@ -1,4 +1,5 @@
-//! Curves as described by a user: any of the controller's by its numbers, a Fourier series, or formulas.
+//! Curves as described by a user: any of the controller's by its numbers, a Fourier series, or
+//! formulas.
 
 use controller::{Analytic, Formula as Formulas, FourierPath, Harmonics, Implicit, OutOfRange, Real};
 use rig::{AnyCurve, Parameter, Parameters, Shape};
@@ -11,7 +12,8 @@ pub const HARMONICS: usize = crate::study::fit::MAX_HARMONICS;
 /// A curve as described by a user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CurveSpec {
-    /// One of the controller's, by the parameters that describe it. Of any shape but the Fourier series', which may have more harmonics here.
+    /// One of the controller's, by the parameters that describe it. Of any shape but the Fourier
+    /// series', which may have more harmonics here.
     Numbers(Box<Parameters<f64>>),
     /// h1 = 0 and h2 = 0 by formulas.
     Implicit(Surfaces),

@@ -79,7 +79,8 @@ own_fields!(FourierFields { center: [f64; 3], cos: Vec<[f64; 3]>, sin: Vec<[f64;
 /// Reads the path described by `value`, the field `at` of the input.
 ///
 /// # Errors
-/// [`Invalid`] for an unknown kind, an unknown or missing field, one out of range, or text that is no formula.
+/// [`Invalid`] for an unknown kind, an unknown or missing field, one out of range, or text that is
+/// not a formula.
 pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Result<PathSpec, Invalid> {
     let Common { kind, speed, yaw, constants } = read(at, value.clone())?;
     for (name, constant) in &constants {

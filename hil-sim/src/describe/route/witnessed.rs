@@ -6,8 +6,8 @@ use rig::{Parameters, Shape, parameter, run};
 use witness::jet::{Dual, Scalar, cross, dot, scale};
 use witness::law::WitnessPath;
 
-/// Newton steps for the nearest point in jets: each doubles the orders that are exact, and seven of time, one of space and
-/// one along the inputs are fewer than sixteen.
+/// Newton steps for the nearest point in jets: each doubles the orders that are exact, and seven of
+/// time, one of space and one along the inputs are fewer than sixteen.
 const DOUBLINGS: usize = 4;
 
 impl WitnessPath for PathSpec {
@@ -40,13 +40,14 @@ impl WitnessPath for PathSpec {
     }
 
     fn direction(&self) -> f64 {
-        // (16) as printed runs against (3).
+        // (15.7) runs against (3.2).
         if matches!(self.curve.shape(), Some((Shape::Circle, _))) { -1.0 } else { 1.0 }
     }
 
     fn tangent<S: Scalar>(&self, p: [S; 3]) -> [S; 3] {
         if let CurveSpec::Fourier(harmonics) = &self.curve {
-            // ρ is the tangent at the nearest point; ∇h1 × ∇h2 turns from it where the normals twist.
+            // ρ is the tangent at the nearest point; ∇h1 × ∇h2 turns from it where the normals
+            // twist.
             let [_, first, _] = curve(harmonics, foot(harmonics, p));
             return unit(first);
         }
@@ -141,8 +142,8 @@ impl PathSpec {
     }
 }
 
-/// r·n1 and r·n2 with r = p − c(σ) from the nearest point, n1 the reference direction less its part along the tangent, and
-/// n2 = t × n1.
+/// r·n1 and r·n2 with r = p − c(σ) from the nearest point, n1 the reference direction less its
+/// part along the tangent, and n2 = t × n1.
 fn normal_coordinates<S: Scalar, const K: usize>(harmonics: &Harmonics<f64, K>, p: [S; 3]) -> [S; 2] {
     let [c, first, _] = curve(harmonics, foot(harmonics, p));
     let r: [S; 3] = std::array::from_fn(|axis| p[axis] - c[axis]);
@@ -182,7 +183,8 @@ fn curve<S: Scalar, const K: usize>(harmonics: &Harmonics<f64, K>, sigma: S) -> 
     sums
 }
 
-/// The parameter of the nearest point, by looking everywhere and then by bisection of the distance's slope.
+/// The parameter of the nearest point, by looking everywhere and then by bisection of the
+/// distance's slope.
 fn nearest<const K: usize>(harmonics: &Harmonics<f64, K>, p: [f64; 3]) -> f64 {
     let samples = 64 * K;
     let step = std::f64::consts::TAU / samples as f64;

@@ -22,10 +22,12 @@ pub struct Supervised {
 }
 
 impl Supervised {
-    /// The controller that `spec` describes, which must be for a path, with these limits for joining it.
+    /// The controller that `spec` describes, which must be for a path, with these limits for
+    /// joining it.
     ///
     /// # Errors
-    /// [`SetupError`] if rounding to f32 takes a parameter out of range, or the approach's limits are.
+    /// [`SetupError`] if rounding to f32 takes a parameter out of range, or the approach's limits
+    /// are.
     pub fn new(spec: &ControllerSpec, approach: &ApproachFields) -> Result<Option<Self>, SetupError<f32>> {
         let Law::Follow { path, gains } = &spec.law else { return Ok(None) };
         let vehicle = Vehicle::new(spec.vehicle.cast())?;

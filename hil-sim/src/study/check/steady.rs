@@ -1,8 +1,10 @@
-//! The vehicle's state and inputs under a payload's motion, by differential flatness: the law's own inverse.
+//! The vehicle's state and inputs under a payload's motion, by differential flatness: the law's own
+//! inverse.
 //!
-//! With s = p̈ − g e3 = λ q the rod is −s/|s| (the cable pulls, λ < 0); κ b3 = q̈ − c s gives thrust and b3; b3 and ψ give the
-//! attitude, ḃ3 and ψ̇ the body rate. The controller's [lift](controller::lift()) and [lower](controller::lower()) then
-//! give the margins and the torque.
+//! With s = p̈ − g e3 = λ q the rod is −s/|s| (the cable pulls, λ < 0); κ b3 = q̈ − c s
+//! gives thrust and b3; b3 and ψ give the attitude, ḃ3 and ψ̇ the body rate. The controller's
+//! [lift](controller::lift()) and [lower](controller::lower()) then give the margins and the
+//! torque.
 
 use super::probe::Motion;
 use controller::Yaw;
@@ -30,8 +32,8 @@ pub struct Steady {
 }
 
 impl Steady {
-    /// The state and inputs that give the payload `motion` and the UAV the yaw ψ, ψ̇, ψ̈; `None` where the payload would be in
-    /// free fall, or the UAV without thrust.
+    /// The state and inputs that give the payload `motion` and the UAV the yaw ψ, ψ̇, ψ̈; `None`
+    /// where the payload would be in free fall, or the UAV without thrust.
     pub fn of(vehicle: &Vehicle<f64>, motion: &Motion, yaw: &[f64; 3]) -> Option<Self> {
         let params = vehicle.params();
         let coupling = vehicle.total_mass() / (params.uav_mass * params.rod_length);

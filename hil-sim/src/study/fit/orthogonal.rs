@@ -1,8 +1,9 @@
-//! Orthogonal distance regression: the curve whose distances to the waypoints, squared, have the least weighted sum.
+//! Orthogonal distance regression: the curve whose distances to the waypoints, squared, have the
+//! least weighted sum.
 //!
-//! Levenberg's and Marquardt's method on the coefficients, with each waypoint's parameter kept at its nearest point: to first
-//! order a change of the curve moves the distance by its part across the tangent only. Changes along the curve do nothing;
-//! the damping keeps them out.
+//! Levenberg's and Marquardt's method on the coefficients, with each waypoint's parameter kept at
+//! its nearest point: to first order a change of the curve moves the distance by its part across
+//! the tangent only. Changes along the curve do nothing; the damping keeps them out.
 
 use controller::Harmonics;
 use controller::Vector3;
@@ -12,7 +13,8 @@ use super::MAX_HARMONICS;
 
 /// Steps, most of them; ten are common.
 const STEPS: usize = 60;
-/// Steps end when the sum of squares falls by less than this part of itself, or of the loop's size squared times 1e-24.
+/// Steps end when the sum of squares falls by less than this part of itself, or of the loop's size
+/// squared times 1e-24.
 const SETTLED: f64 = 1e-9;
 /// Damping at first, relative to the mean diagonal.
 const DAMPING: f64 = 1e-6;

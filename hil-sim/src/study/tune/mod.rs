@@ -1,14 +1,18 @@
-//! Poles and observer bandwidths for a vehicle, its rate, latency, rotor lag and noise, found by flying.
+//! Poles and observer bandwidths for a vehicle, its rate, latency, rotor lag and noise, found by
+//! flying.
 //!
-//! Two numbers are sought: s of the spread poles s·{−1, …, −6} for the surfaces, s·{−1, …, −5} for the speed and s·{−2, −3} for the yaw, and the
-//! bandwidth of the observers, in place of the scenario's own poles and integral action. Each pair of a grid flies the scenario's world
+//! Two numbers are sought: s of the spread poles s·{−1, …, −6} for the surfaces, s·{−1, …,
+//! −5} for the speed and s·{−2, −3} for the yaw, and the bandwidth of the observers, in place
+//! of the scenario's own poles and integral action. Each pair of a grid flies the scenario's world
 //! with the same random starts beside its path, gusts and noise.
 //!
-//! A flight is good as in [`compare`](crate::study::compare) (d_C < 25 cm in the last quarter), if rod and thrust also stayed within the angles of
-//! [`EnvelopeParams::wide`], where a supervised law would have given up. Of the settings with the most good flights the one
-//! proposed has the least d_C² τ, both root mean squares of the last quarter: a setting may cost two per cent more torque for each per
-//! cent by which it comes closer to the path. What the law does not know of the world counts only if the scenario has it: another
-//! payload than `controller.vehicle`, wind, a weak rotor.
+//! A flight is good as in [`compare`](crate::study::compare) (d_C < 25 cm in the last quarter), if
+//! rod and thrust also stayed within the angles of [`EnvelopeParams::wide`], where a supervised law
+//! would have given up. Of the settings with the most good flights the one proposed has the least
+//! d_C² τ, both root mean squares of the last quarter: a setting may cost two per cent more torque
+//! for each per cent by which it comes closer to the path. What the law does not know of the world
+//! counts only if the scenario has it: another payload than `controller.vehicle`, wind, a weak
+//! rotor.
 
 mod report;
 
@@ -97,8 +101,8 @@ pub struct Tuning {
     pub snippet: String,
 }
 
-/// The keys of a scenario with spread poles of this `scale` and observers of this `bandwidth`, rad/s, in place of its own, and without integral
-/// action.
+/// The keys of a scenario with spread poles of this `scale` and observers of this `bandwidth`,
+/// rad/s, in place of its own, and without integral action.
 #[must_use]
 pub fn with_settings(table: &toml::Table, scale: f64, bandwidth: f64) -> toml::Table {
     let mut table = table.clone();
@@ -117,10 +121,12 @@ pub fn with_settings(table: &toml::Table, scale: f64, bandwidth: f64) -> toml::T
     table
 }
 
-/// Flies `runs` flights for each pair of a scale and a bandwidth (rad/s); `None` if interrupted. `table` are a scenario's keys.
+/// Flies `runs` flights for each pair of a scale and a bandwidth (rad/s); `None` if interrupted.
+/// `table` are a scenario's keys.
 ///
 /// # Errors
-/// [`TuneError`] for a scenario that is none, that does not follow a closed path, or that does not take one of the settings.
+/// [`TuneError`] for an invalid scenario, one that does not follow a closed path, or one that does
+/// not take one of the settings.
 pub fn tune(
     table: &toml::Table,
     (scales, bandwidths): (&[f64], &[f64]),
