@@ -223,7 +223,7 @@ fn row(case: &Case, law: Contender, flights: &[(Outcome, Vec<f32>)]) -> Row {
     }
 }
 
-/// The `share` percentile, linear between values; sorts `values`; 0 if there are none.
+/// The `share` percentile, linear between values; sorts `values`; 0 without any.
 pub fn percentile(values: &mut [f64], share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let Some(last) = values.len().checked_sub(1) else { return 0.0 };
