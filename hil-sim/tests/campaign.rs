@@ -185,3 +185,23 @@ fn a_fault_that_is_not_there_is_refused_by_name() {
         assert!(message.contains(named), "{named}: {message}");
     }
 }
+
+#[test]
+fn results_of_an_unknown_campaign_are_not_written_over() {
+    let folder = folder("nameless");
+    fs::create_dir_all(folder.join("out")).expect("a folder");
+    fs::write(folder.join("out/runs.csv"), "run,verdict\n").expect("a file");
+    let output = command(&folder, "out", &[]).output().expect("it starts");
+    assert!(!output.status.success());
+    assert!(String::from_utf8_lossy(&output.stderr).contains("no campaign.json"), "{output:?}");
+    assert_eq!(table(&folder, "out"), b"run,verdict\n");
+}
+
+#[test]
+fn a_flight_that_the_campaign_does_not_have_is_not_replayed() {
+    let folder = folder("beyond");
+    let output = command(&folder, "out", &["--replay", RUNS]).output().expect("it starts");
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("--replay 150") && said.contains("0 to 149"), "{said}");
+}

@@ -294,3 +294,24 @@ fn branches_are_apart_by_the_shortest_double_normal() {
     let bone = check(&implicit("sqrt(x^2 + y^2) - 4 - 2*cos(2*atan2(y, x))", "z + 10")).unwrap();
     assert!((bone.branches.unwrap().distance - 4.0).abs() < 1e-7, "{bone}");
 }
+
+#[test]
+fn functions_whose_gradients_are_parallel_everywhere_are_no_undefined_formula() {
+    for (h1, h2) in [("25", "z + 10"), ("x - x", "z + 10"), ("x^2 + y^2 - 25", "x^2 + y^2 - 25")] {
+        assert_eq!(check(&implicit(h1, h2)).unwrap_err().reason, Reason::Parallel, "{h1}, {h2}");
+    }
+    assert_eq!(check(&implicit("sqrt(x - 1e6)", "z + 10")).unwrap_err().reason, Reason::Undefined);
+}
+
+/// Ripples of 6 mm make ten thousands of nodes, of which not each is compared with each other. The shortest double normal of an ellipse
+/// with half axes 7 m and 4 m is then found to within what they move it: their height, and their slope over the distance.
+#[test]
+fn a_curve_with_very_many_bends_is_walked_and_its_branches_are_found() {
+    let rippled = check(&implicit("(x/7)^2 + (y/4)^2 - 1 + 1e-5*sin(1000*x)", "z + 10")).unwrap();
+    assert!(rippled.lap.nodes().len() > 30_000, "{}", rippled.lap.nodes().len());
+    let (height, slope) = (2e-5, 2e-2_f64);
+    let found = rippled.branches.unwrap().distance;
+    assert!((found - 8.0).abs() < 2.0 * height + 8.0 * slope * slope, "{found}");
+    let eight = implicit("(x^2 + y^2)^2 - 50*(x^2 - y^2) + 1e-3*(cos(2000*x) - 1)", "z + 10");
+    assert!(check(&eight).is_err(), "it crosses itself");
+}

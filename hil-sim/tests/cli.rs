@@ -187,9 +187,101 @@ fn eval_answers_in_order_and_fails_at_the_end_if_a_line_was_bad() {
 
 #[test]
 fn eval_of_good_lines_succeeds() {
-    let output = evaluate(&format!("{POINT}\n\n{POINT}\n"));
-    assert!(output.status.success());
+    let output = evaluate(&format!("\u{feff}{POINT}\n{POINT}\n"));
+    assert!(output.status.success(), "a byte order mark is no fault");
     assert_eq!(text(&output.stdout).lines().count(), 2);
+}
+
+/// An answer for each line, so that who counts them is not mistaken; and nothing guessed.
+#[test]
+fn eval_answers_empty_lines_and_refuses_what_could_be_meant_in_two_ways() {
+    let twice = POINT.replace("\"radius\":5.0", "\"radius\":5.0,\"radius\":6.0");
+    let list = POINT.replace(
+        "{\"payload_mass\":0.5,\"uav_mass\":2.5,\"inertia\":[0.03,0.03,0.05],\"rod_length\":2.0,\"gravity\":9.81}",
+        "[0.5,2.5,2.0,[0.03,0.03,0.05],9.81]",
+    );
+    assert!(list != POINT);
+    let output = evaluate(&format!("{POINT}\n\n{twice}\n{list}\n[]\n{POINT}\n"));
+    assert_eq!(output.status.code(), Some(1));
+    let stdout = text(&output.stdout);
+    let lines: Vec<serde_json::Value> =
+        stdout.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
+    assert_eq!(lines.len(), 6);
+    assert_eq!(lines[0], lines[5]);
+    for (line, message) in
+        [(1, "empty"), (2, "\"radius\" is given twice"), (3, "vehicle: a list"), (4, "line: a list")]
+    {
+        assert!(lines[line]["error"].as_str().is_some_and(|error| error.contains(message)), "{}", lines[line]);
+    }
+}
+
+/// Long before the hours that the flights would take.
+#[test]
+fn a_folder_that_cannot_be_written_to_is_named_before_anything_is_flown() {
+    let folder = folder("unwritable");
+    let endless = SHORT.replace("duration_s = 0.5", "duration_s = 100000.0\nlog_period_s = 10.0");
+    fs::write(folder.join("endless.toml"), endless).expect("a file");
+    fs::write(folder.join("file"), "").expect("a file");
+    fs::write(folder.join("points.csv"), "1,0,-10\n0,2,-10\n-1,0,-10\n0,-2,-11\n").expect("a file");
+    let out = folder.join("file/out");
+    let commands: [&[&str]; 6] = [
+        &["run", "endless.toml"],
+        &["tune", "endless.toml", "--runs", "100000"],
+        &["compare", "--runs", "100000"],
+        &["policies", "--runs", "100000"],
+        &["campaign", "--runs", "100000000"],
+        &["fit", "points.csv"],
+    ];
+    for arguments in commands {
+        let output =
+            program().current_dir(&folder).args(arguments).arg("--out").arg(&out).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        assert!(text(&output.stderr).contains("file/out"), "{arguments:?}: {}", text(&output.stderr));
+    }
+}
+
+/// A law that is called five times a second is no law for this vehicle.
+#[test]
+fn a_flight_that_is_lost_ends_with_a_report_of_numbers_that_says_so() {
+    let folder = folder("lost");
+    let slow = SHORT.replace("duration_s = 0.5", "duration_s = 40.0") + "rate_hz = 5.0\n";
+    fs::write(folder.join("slow.toml"), slow.replace("speed = -5.0", "speed = 1.0")).expect("a file");
+    let out = folder.join("out");
+    let output =
+        program().arg("run").arg(folder.join("slow.toml")).arg("--out").arg(&out).output().expect("it starts");
+    assert_eq!(output.status.code(), Some(1));
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
+    let failure = summary["runs"][0]["failure"].as_str().expect("a failure");
+    assert!(failure.starts_with("lost at ") && failure.ends_with(" s"), "{failure}");
+    for said in [text(&output.stderr), fs::read_to_string(out.join("report.html")).unwrap()] {
+        assert!(said.contains(failure), "{failure} in {said}");
+    }
+    let log = fs::read_to_string(out.join("slow.csv")).unwrap();
+    assert!(!log.contains("NaN") && !log.contains("inf"), "{log}");
+}
+
+/// 39.2 N to lift, 36 N of rotors.
+#[test]
+fn a_vehicle_that_cannot_lift_its_load_is_refused_by_check_and_run_alike() {
+    let folder = folder("overweight");
+    let rotors = "[actuators.rotors]\nlayout = \"quad-x\"\narm_m = 0.2\ndrag_m = 0.02\nmax_thrust = 9.0\n";
+    let heavy =
+        SHORT.replace("speed = -5.0", "speed = 1.0").replace("path =", "vehicle = { payload_mass = 1.5 }\npath =");
+    fs::write(folder.join("heavy.toml"), heavy + rotors).expect("a file");
+    let out = folder.join("out");
+    let ask = |arguments: &[&str]| {
+        program().current_dir(&folder).args(arguments).arg("--out").arg(&out).output().expect("it starts")
+    };
+    for command in ["check", "run"] {
+        let output = ask(&[command, "heavy.toml"]);
+        assert_eq!(output.status.code(), Some(1), "{command}");
+        let said = text(&output.stderr);
+        assert!(said.contains("thrust 39.2") && said.contains("limit of 36.000 N"), "{command}: {said}");
+        assert!(!out.exists(), "{command}");
+    }
+    let flown = ask(&["run", "heavy.toml", "--unchecked"]);
+    assert!(flown.status.success() && text(&flown.stderr).contains("36.000 N"), "{}", text(&flown.stderr));
+    assert!(out.join("heavy.csv").exists());
 }
 
 #[cfg(unix)]
@@ -247,4 +339,47 @@ fn without_a_name_a_target_flies_what_it_can() {
     let output = program().args(["hil", "--connect", "unix:/no/such/socket"]).output().expect("the program starts");
     let errors = text(&output.stderr);
     assert!(errors.contains("cannot connect to unix:/no/such/socket"), "{errors}");
+}
+
+/// Something that is called as the emulator is, and says its process number.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_killed_program_takes_its_emulator_with_it() {
+    use std::os::unix::fs::PermissionsExt;
+    use std::time::{Duration, Instant};
+    let folder = folder("orphan");
+    let (emulator, number) = (folder.join("qemu-system-arm"), folder.join("number"));
+    let script = format!("#!/bin/sh\necho $$ > {}.new\nmv {0}.new {0}\nexec sleep 600\n", number.display());
+    fs::write(&emulator, script).expect("a file");
+    fs::set_permissions(&emulator, fs::Permissions::from_mode(0o755)).expect("it can be run");
+    let path = format!("{}:{}", folder.display(), std::env::var("PATH").expect("a path"));
+    let mut child = program()
+        .env("PATH", path)
+        .args(["hil", "fig3a", "--patience", "60", "--emulate"])
+        .arg(&emulator)
+        .arg("--out")
+        .arg(folder.join("out"))
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the program starts");
+    let begun = Instant::now();
+    let process = loop {
+        match fs::read_to_string(&number) {
+            Ok(text) => break text.trim().to_owned(),
+            Err(_) => assert!(begun.elapsed() < Duration::from_secs(20), "no emulator was started"),
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    let runs = || {
+        let state = fs::read_to_string(format!("/proc/{process}/stat")).unwrap_or_default();
+        !(state.is_empty() || state.contains(") Z "))
+    };
+    assert!(runs());
+    child.kill().expect("it runs");
+    child.wait().expect("it ends");
+    let killed = Instant::now();
+    while runs() {
+        assert!(killed.elapsed() < Duration::from_secs(5), "the emulator runs on");
+        std::thread::sleep(Duration::from_millis(20));
+    }
 }

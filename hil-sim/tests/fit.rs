@@ -122,7 +122,7 @@ fn the_path_file_holds_the_curve() {
 #[test]
 fn files_are_read_as_documented() {
     let text = "x, y, z\n# corner\n1.5,0,-10\n 0 , 2.5e0 ,-10\n-1,0,-10\n0,-2,-11\n1.5,0,-10\n";
-    let points = read("w.csv", text).unwrap();
+    let points = read("w.csv", text).unwrap().points;
     assert_eq!(points.len(), 4);
     assert!(length(&(points[1] - Vector3::new(0.0, 2.5, -10.0))) == 0.0);
 }
@@ -152,7 +152,7 @@ fn bad_files_are_refused_with_line_column_and_value() {
 /// The scenarios round the building fly the curve that their waypoints give.
 #[test]
 fn the_building_scenarios_hold_the_fit_of_their_waypoints() {
-    let points = read("building.csv", include_str!("../scenarios/building.csv")).unwrap();
+    let points = read("building.csv", include_str!("../scenarios/building.csv")).unwrap().points;
     let found = fit(&points, 0.05).unwrap();
     for name in ["building", "building-light", "building-heavy"] {
         let scenario = hil_sim::describe::scenario::builtin(name).unwrap().unwrap();
@@ -161,4 +161,65 @@ fn the_building_scenarios_hold_the_fit_of_their_waypoints() {
         // The file's coefficients are rounded to nanometres.
         assert!(off < 1e-7, "{name}: {off:e}");
     }
+}
+
+/// The same loop in other words.
+#[test]
+fn names_and_units_of_columns_are_obeyed() {
+    let plain = read("w.csv", "10,0,-12\n0,8,-12\n-10,0,-11\n0,-8,-12\n").unwrap().points;
+    let cases = [
+        "z,y,x\n-12,0,10\n-12,8,0\n-11,0,-10\n-12,-8,0\n",
+        "north,east,up\n10,0,12\n0,8,12\n-10,0,11\n0,-8,12\n",
+        "East (m), North (m), Altitude (m)\n0,10,12\n8,0,12\n0,-10,11\n-8,0,12\n",
+        "x_cm,y_cm,z_up_cm\n1000,0,1200\n0,800,1200\n-1000,0,1100\n0,-800,1200\n",
+        "e,n,d\n0,10,-12\n8,0,-12\n0,-10,-11\n-8,0,-12\n",
+        "west,south,down [m]\n0,-10,-12\n-8,0,-12\n0,10,-11\n8,0,-12\n",
+    ];
+    for text in cases {
+        let points = read("w.csv", text).unwrap_or_else(|error| panic!("{text}: {error}")).points;
+        let off = points.iter().zip(&plain).map(|(one, other)| length(&(one - other))).fold(0.0, f64::max);
+        assert!(off < 1e-12, "{text}: {points:?}");
+    }
+    let feet = read("w.csv", "x ft,y ft,z ft\n10,0,-12\n0,8,-12\n-10,0,-11\n0,-8,-12\n").unwrap().points;
+    assert!(feet.iter().zip(&plain).all(|(one, other)| length(&(one - other * 0.3048)) < 1e-12));
+    for (names, column, message) in [
+        ("lat,lon,alt", Some(1), "an angle"),
+        ("x,y,z (deg)", Some(3), "an angle"),
+        ("x,y,colour", Some(3), "colour"),
+        ("x,y,z_parsec", Some(3), "parsec"),
+        ("x,y,x", None, "n3"),
+        ("x,y,z,t", Some(4), "\"t\""),
+        ("x,y", None, "2 names"),
+    ] {
+        let error = read("w.csv", &format!("{names}\n1,2,3\n")).expect_err(names);
+        assert_eq!((error.line, error.column), (1, column), "{error}");
+        assert!(error.message.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn sizes_that_make_no_sense_are_doubted() {
+    let doubts = |scale: f64, z: f64| {
+        let point = |x: f64, y: f64| format!("{},{},{z}\n", scale * x, scale * y);
+        let text = point(10.0, 0.0) + &point(0.0, 8.0) + &point(-10.0, 0.0) + &point(0.0, -8.0);
+        read("w.csv", &text).unwrap().doubts()
+    };
+    assert_eq!(doubts(1.0, -12.0), Vec::<String>::new());
+    for (scale, z, doubt) in [(1e-5, -12.0, "2.00e-4 m"), (1e3, -12.0, "20.0 km"), (1.0, 12.0, "below the origin")] {
+        assert!(doubts(scale, z)[0].contains(doubt), "{:?}", doubts(scale, z));
+    }
+}
+
+#[test]
+fn more_waypoints_than_a_loop_needs_are_refused() {
+    let line = |i: usize| format!("{},{},-10\n", 10.0 * (1e-4 * i as f64).cos(), 10.0 * (1e-4 * i as f64).sin());
+    let error = read("w.csv", &(0..30_000).map(line).collect::<String>()).unwrap_err();
+    assert!(error.message.contains("more than 20000"), "{error}");
+}
+
+/// A loop as thin as a hair, whose tangents are all but one: the search for a reference direction ends all the same.
+#[test]
+fn a_hair_of_a_loop_is_answered() {
+    let answer = fit(&loop_of(16, |s| [47.0 + 9e-5 * s.cos(), 8.0 + 8e-5 * s.sin(), 12.0 + s.sin()]), 0.05);
+    assert!(answer.is_err() || answer.is_ok_and(|found| found.reference_angle > LEAST_ANGLE));
 }

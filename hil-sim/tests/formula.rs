@@ -117,3 +117,15 @@ proptest! {
         }
     }
 }
+
+/// Of a long formula the part that matters.
+#[test]
+fn an_error_shows_an_excerpt() {
+    let text = format!("{}q{}", "x + ".repeat(400), " + y".repeat(400));
+    let error = Formula::parse(&text, &constants()).unwrap_err();
+    let shown = error.to_string();
+    assert_eq!(error.column, 1601);
+    assert!(shown.contains("column 1601 of \"…x + ") && shown.contains("q + y"), "{shown}");
+    assert!(shown.chars().count() < 200, "{shown}");
+    assert!(Formula::parse("x + q", &constants()).unwrap_err().to_string().contains("column 5 of \"x + q\":"));
+}

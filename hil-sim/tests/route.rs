@@ -189,3 +189,20 @@ fn errors_name_the_field_and_the_column() {
         assert!(error.to_string().contains(message), "{path}: {error}");
     }
 }
+
+/// Of a curve that does not close the distance is that of the foot nearby: against the least over points of the curve.
+#[test]
+fn an_open_curve_has_a_distance() {
+    let open = parse_path("path", json!({ "kind": "implicit", "h1": "y - 2*sin(x/3)", "h2": "z + 10", "speed": 1 }));
+    let open = open.unwrap();
+    assert!(open.lap().is_err());
+    for point in [[0.0, 0.5, -10.0], [4.0, 3.0, -9.0], [-20.0, -2.5, -10.5], [7.0, 0.0, -10.0]] {
+        let away = |x: f64| {
+            let along = Vector3::new(x, 2.0 * (x / 3.0).sin(), -10.0) - Vector3::from(point);
+            along.dot(&along).sqrt()
+        };
+        let least = (-40_000..40_000).map(|i| away(1e-3 * f64::from(i))).fold(f64::INFINITY, f64::min);
+        let found = open.distance(point);
+        assert!((found - least).abs() < 1e-6, "{point:?}: {found} against {least}");
+    }
+}

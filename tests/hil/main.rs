@@ -102,6 +102,58 @@ fn noise_changes_nothing_but_the_time_it_takes() {
     assert!(target.statistics().repeats > 100, "the line was not noisy: {} repeats", target.statistics().repeats);
 }
 
+/// Loses each tenth of what the target says whole reads at a time, if it is telemetry.
+struct Deaf {
+    stream: UnixStream,
+    heard: u32,
+}
+
+impl Read for Deaf {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(bytes)?;
+        // A frame of MAVLink 2 begins with its sign and has the message's number from the eighth byte on.
+        let telemetry = <link::dialect::LOAD_TELEMETRY_DATA as mavlink_core::MessageData>::ID.to_le_bytes();
+        if bytes.first() == Some(&0xfd) && bytes.get(7..10) == Some(&telemetry[..3]) {
+            self.heard += 1;
+            if self.heard.is_multiple_of(10) {
+                bytes[9] ^= 1;
+            }
+        }
+        Ok(count)
+    }
+}
+
+impl Write for Deaf {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+impl Wire for Deaf {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.stream.set_patience(patience)
+    }
+}
+
+/// What is missing from a log is counted.
+#[test]
+fn telemetry_that_is_lost_is_counted() {
+    let options = Options { telemetry: true, ..OPTIONS };
+    let mut target = soft_target(options, |stream| Deaf { stream, heard: 0 }).unwrap();
+    let scenario = scenario("fig3a", 1.0);
+    target.prepare(&scenario).unwrap();
+    let flight = fly(&scenario, &mut target);
+    assert_eq!(flight.end, End::Complete);
+    let decided = flight.log.iter().filter_map(|sample| sample.decision);
+    let missing = decided.filter(|decision| decision.telemetry.is_none()).count() as u64;
+    assert!(missing > 5, "{missing}");
+    assert_eq!(target.statistics().telemetry_lost, missing);
+}
+
 /// Answers come later than they are asked for again.
 struct Slow {
     stream: UnixStream,

@@ -87,18 +87,24 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
         None => ("campaign.toml".to_owned(), BUILTIN.to_owned()),
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
+    let runs = arguments.runs.unwrap_or(campaign.runs);
     if let Some(run) = arguments.replay {
+        if run >= runs {
+            return Err(format!("--replay {run}: the campaign's flights are 0 to {}", runs - 1).into());
+        }
+        common.tried()?;
         return replay(common, &campaign, Seed { batch: arguments.many.seed, run }, &arguments.logs);
     }
 
     let stop = many::interrupt()?;
     let identity = Identity {
         campaign: text,
-        runs: arguments.runs.unwrap_or(campaign.runs),
+        runs,
         seed: arguments.many.seed,
         shard: arguments.shard.unwrap_or(Shard::WHOLE),
         version: env!("CARGO_PKG_VERSION").to_owned(),
     };
+    common.tried()?;
     let pool = arguments.many.pool()?;
     let planned = identity.shard.runs(identity.runs).count();
     let bar = many::bar(common.quiet, planned as u64, "{wide_bar} {pos} of {len} flights, {eta} left");

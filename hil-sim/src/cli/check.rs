@@ -3,7 +3,7 @@
 use controller::{Vehicle, VehicleParams};
 use hil_sim::describe::course::{PathSpec, parse_path};
 use hil_sim::describe::scenario::{Law, Scenario};
-use hil_sim::study::check::Limits;
+use hil_sim::study::check::{Limits, Reason};
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -46,8 +46,10 @@ pub fn check(common: &Common, files: &[PathBuf]) -> Ended {
     Ok(code)
 }
 
-/// Warns of each path that can't be flown or exceeds a limit, before it is flown.
-pub fn warn(scenarios: &[Scenario]) {
+/// Refuses scenarios whose vehicle can't give what their path asks for, as [`check`] does; with `unchecked`, warns of it. Of a curve
+/// that is not closed, smooth and regular it warns.
+pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Error>> {
+    let mut refused = Vec::new();
     for scenario in scenarios {
         let Law::Follow { path, .. } = &scenario.controller.law else { continue };
         // The scenario's vehicle has been validated.
@@ -55,11 +57,26 @@ pub fn warn(scenarios: &[Scenario]) {
         match path.check(&vehicle, &scenario.limits) {
             Ok(report) => {
                 for excess in report.excesses {
-                    eprintln!("hil-sim: {}: warning: {excess}", scenario.name);
+                    refused.push(format!("{}: {excess}", scenario.name));
                 }
+            }
+            Err(refusal) if refusal.reason == Reason::FreeFall => {
+                refused.push(format!("{}: {refusal}", scenario.name));
             }
             Err(refusal) => eprintln!("hil-sim: {}: warning: this path cannot be flown: {refusal}", scenario.name),
         }
+    }
+    match (refused.is_empty(), unchecked) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            refused.iter().for_each(|line| eprintln!("hil-sim: {line}: warning: flown all the same"));
+            Ok(())
+        }
+        (false, false) => Err(format!(
+            "{}\nNothing is flown. [limits] may allow more; --unchecked flies it all the same.",
+            refused.join("\n")
+        )
+        .into()),
     }
 }
 

@@ -44,6 +44,7 @@ pub fn compare(common: &Common, arguments: &CompareArguments) -> Ended {
     let wanted = |name: &str| cases.is_empty() || cases.iter().any(|case| case == name);
     let stop = many::interrupt()?;
 
+    common.tried()?;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, compare::work_s(runs, &wanted));
     let compared = pool.install(|| {

@@ -16,26 +16,33 @@ pub const EXAMPLES: &str = r#"Examples:
 
 "x" are the paper's coordinates: p, alpha, beta, phi, theta, psi, v, alpha_dot, beta_dot, omega; gains are low order first."#;
 
-/// Answers every line of standard input on standard output.
+/// What some programs begin a text with.
+const BYTE_ORDER_MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// Answers every line of standard input on standard output, an empty one with an error.
 pub fn evaluate_lines() -> Ended {
     let mut input = BufReader::new(io::stdin().lock());
     let mut output = BufWriter::new(io::stdout().lock());
     let mut code = ExitCode::SUCCESS;
     let mut line = Vec::new();
+    let mut is_first = true;
     while input.read_until(b'\n', &mut line)? > 0 {
-        if !line.trim_ascii().is_empty() {
-            match evaluate(&line) {
-                Ok(answer) => serde_json::to_writer(&mut output, &answer)?,
-                Err(invalid) => {
-                    code = ExitCode::FAILURE;
-                    serde_json::to_writer(&mut output, &serde_json::json!({ "error": invalid.to_string() }))?;
-                }
+        let text = match line.strip_prefix(BYTE_ORDER_MARK) {
+            Some(text) if is_first => text,
+            _ => &line,
+        };
+        is_first = false;
+        match evaluate(text) {
+            Ok(answer) => serde_json::to_writer(&mut output, &answer)?,
+            Err(invalid) => {
+                code = ExitCode::FAILURE;
+                serde_json::to_writer(&mut output, &serde_json::json!({ "error": invalid.to_string() }))?;
             }
-            output.write_all(b"\n")?;
-            // Someone may be waiting for the answer before asking on.
-            if input.buffer().is_empty() {
-                output.flush()?;
-            }
+        }
+        output.write_all(b"\n")?;
+        // Someone may be waiting for the answer before asking on.
+        if input.buffer().is_empty() {
+            output.flush()?;
         }
         line.clear();
     }

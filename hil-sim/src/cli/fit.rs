@@ -1,6 +1,7 @@
 //! `fit`: a closed curve through waypoints.
 
 use clap::Args;
+use hil_sim::report;
 use hil_sim::study::fit;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -15,7 +16,7 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim fit waypoints.csv --rust > path.rs    a constant for firmware
 
 The CSV file has a line x,y,z a waypoint, in metres, z down, in the order flown; the loop closes by itself. A first line of
-names and lines that begin with # are passed over.";
+names may say otherwise: north, east, up, down, alt, each with a unit, as in up_ft. Lines that begin with # are passed over.";
 
 /// What to fit.
 #[derive(Args)]
@@ -39,10 +40,17 @@ pub fn fit(common: &Common, arguments: &FitArguments) -> Ended {
         return Err(format!("--tolerance {tolerance}: not a positive length").into());
     }
     let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
-    let fitted = fit::fit(&fit::read(&name, &text)?, *tolerance).map_err(|error| format!("{name}: {error}"))?;
+    if let Some(to) = &common.out {
+        report::try_file(to)?;
+    }
+    let waypoints = fit::read(&name, &text)?;
+    for doubt in waypoints.doubts() {
+        eprintln!("hil-sim: {name}: warning: {doubt}");
+    }
+    let fitted = fit::fit(&waypoints.points, *tolerance).map_err(|error| format!("{name}: {error}"))?;
     let source = file.file_name().unwrap_or_default().to_string_lossy();
     if let Some(to) = &common.out {
-        std::fs::write(to, fit::toml(&fitted, &source)).map_err(|error| format!("{}: {error}", to.display()))?;
+        report::write_file(to, fit::toml(&fitted, &source).as_bytes())?;
     }
     let mut out = io::stdout().lock();
     if *rust {
@@ -51,8 +59,8 @@ pub fn fit(common: &Common, arguments: &FitArguments) -> Ended {
     // The report keeps out of the way of what is to be pasted.
     match (common.quiet, *rust) {
         (true, _) => {}
-        (false, true) => eprint!("{fitted}"),
-        (false, false) => write!(out, "{fitted}")?,
+        (false, true) => eprint!("columns              {}\n{fitted}", waypoints.columns),
+        (false, false) => write!(out, "columns              {}\n{fitted}", waypoints.columns)?,
     }
     Ok(ExitCode::SUCCESS)
 }

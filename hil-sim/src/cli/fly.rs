@@ -12,10 +12,11 @@ use std::process::ExitCode;
 use super::{Common, Ended, Logs, many};
 
 /// Flies, prints the table, and writes the report; on an interrupt, of the flights that are done.
-pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic, logs: &Logs) -> Ended {
+pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic, unchecked: bool, logs: &Logs) -> Ended {
     let stop = many::interrupt()?;
 
-    super::check::warn(&scenarios);
+    super::check::refuse(&scenarios, unchecked)?;
+    common.tried()?;
     let planned = scenarios.len();
     let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
     let control = Control { stop: &stop, progress: &many::progress(&bar) };

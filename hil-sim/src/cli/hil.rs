@@ -26,6 +26,7 @@ pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
         if arguments.files.is_empty() { load::built_in(&[FIGURES])? } else { load::all(&arguments.files)? };
     let stop = many::interrupt()?;
 
+    common.tried()?;
     let planned = scenarios.len();
     let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
     let flown = hil::fly_all(arguments, scenarios, Control { stop: &stop, progress: &many::progress(&bar) })?;

@@ -58,6 +58,11 @@ struct Common {
 }
 
 impl Common {
+    /// The folder for reports, once it is known that it can be written to.
+    fn tried(&self) -> Result<&Path, hil_sim::report::ReportError> {
+        hil_sim::report::try_folder(self.folder()).map(|()| self.folder())
+    }
+
     /// The folder for reports.
     fn folder(&self) -> &Path {
         self.out.as_deref().unwrap_or(Path::new("out"))
@@ -92,6 +97,9 @@ enum Command {
         /// which and where; RUST_BACKTRACE=1 says how it came to it.
         #[arg(long)]
         trap: bool,
+        /// Fly even what asks more of the vehicle than its [limits] or its actuators allow.
+        #[arg(long)]
+        unchecked: bool,
         #[command(flatten)]
         logs: Logs,
     },
@@ -177,8 +185,9 @@ enum Command {
 pub fn run() -> Ended {
     let Cli { command, common } = Cli::parse();
     match command {
-        Some(Command::Run { files, trap, logs }) => {
-            fly::fly(&common, load::all(&files)?, if trap { Arithmetic::Trapped } else { Arithmetic::F32 }, &logs)
+        Some(Command::Run { files, trap, unchecked, logs }) => {
+            let arithmetic = if trap { Arithmetic::Trapped } else { Arithmetic::F32 };
+            fly::fly(&common, load::all(&files)?, arithmetic, unchecked, &logs)
         }
         Some(Command::Figures(logs)) => figures(&common, &logs),
         None => figures(&common, &Logs { log: vec![Format::Csv] }),
@@ -196,5 +205,5 @@ pub fn run() -> Ended {
 }
 
 fn figures(common: &Common, logs: &Logs) -> Ended {
-    fly::fly(common, load::built_in(&[FIGURES, CURVES])?, Arithmetic::F32, logs)
+    fly::fly(common, load::built_in(&[FIGURES, CURVES])?, Arithmetic::F32, false, logs)
 }

@@ -28,6 +28,7 @@ pub fn policies(common: &Common, arguments: &PolicyArguments) -> Ended {
     let PolicyArguments { runs, many } = arguments;
     let runs = *runs as usize;
     let stop = many::interrupt()?;
+    common.tried()?;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, compare::policies_work_s(runs));
     let compared = pool

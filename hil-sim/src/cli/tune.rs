@@ -3,6 +3,7 @@
 use clap::Args;
 use hil_sim::describe::scenario::{self, Scenario};
 use hil_sim::fly::flight::Control;
+use hil_sim::report;
 use hil_sim::study::tune;
 use std::fs;
 use std::io::{self, Write};
@@ -61,6 +62,7 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
     let stop = many::interrupt()?;
 
     let runs = *runs as usize;
+    common.tried()?;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, (scales.len() * bandwidths.len() * runs) as f64 * duration_s);
     let tuned = pool.install(|| {
@@ -76,12 +78,11 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
         return Ok(many::nothing_reported());
     };
     let folder = common.folder();
-    fs::create_dir_all(folder)?;
     let snippet = folder.join("tune.toml");
     let trade = tune::trade(&tuning);
     let comment: String = trade.lines().map(|line| format!("# {line}\n")).collect();
-    fs::write(&snippet, format!("{comment}{}", tuning.snippet))?;
-    fs::write(folder.join("tune.json"), serde_json::to_string_pretty(&tuning)?)?;
+    report::write_file(&snippet, format!("{comment}{}", tuning.snippet).as_bytes())?;
+    report::write_file(&folder.join("tune.json"), serde_json::to_string_pretty(&tuning)?.as_bytes())?;
     if !common.quiet {
         let mut out = io::stdout().lock();
         writeln!(out, "{}\n\n{trade}", tune::table(&tuning))?;

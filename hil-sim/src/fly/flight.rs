@@ -86,7 +86,7 @@ impl End {
     }
 }
 
-/// What a watcher sees at every control period, and once more at the end.
+/// What a watcher sees at every control period, and once more at the end, if the state is then one to be seen.
 pub struct Moment<'a> {
     /// Control periods since the start.
     pub step: u64,
@@ -192,8 +192,11 @@ pub fn fly(
         }
     }
     let state = world.body().state();
-    let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
-    watch(&Moment { step, t_s: world.time_s(), state: &state, distance_m, decision: None, is_over: true });
+    // A state beyond all ranges is no number to log or to draw.
+    if state.check().is_ok() {
+        let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
+        watch(&Moment { step, t_s: world.time_s(), state: &state, distance_m, decision: None, is_over: true });
+    }
     (plan.control.progress)(scenario.duration_s - told_s);
     end
 }

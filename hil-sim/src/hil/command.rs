@@ -89,6 +89,8 @@ pub struct LinkReport {
     pub instructions_max: Option<f64>,
     /// Frames sent again.
     pub repeats: u64,
+    /// Logged samples whose telemetry was lost on the line: their cells are empty.
+    pub telemetry_lost: u64,
     /// Frames that could not be used.
     pub bad_frames: u64,
     /// Times the line came back.
@@ -199,6 +201,7 @@ fn link_report(name: &str, statistics: &Statistics, elapsed_s: f64, counts: Opti
         instructions_median: instructions(median),
         instructions_max: instructions(most),
         repeats: statistics.repeats,
+        telemetry_lost: statistics.telemetry_lost,
         bad_frames: statistics.bad_frames,
         reconnections: statistics.reconnections,
         late: statistics.late,
@@ -223,6 +226,7 @@ pub fn table(links: &[LinkReport]) -> Table {
         "instructions\nmedian",
         "\nmax",
         "sent\nagain",
+        "telemetry\nlost",
         "bad\nframes",
         "line\nmended",
         "late",
@@ -242,6 +246,7 @@ pub fn table(links: &[LinkReport]) -> Table {
             or_none(link.instructions_median),
             or_none(link.instructions_max),
             link.repeats.to_string(),
+            link.telemetry_lost.to_string(),
             link.bad_frames.to_string(),
             link.reconnections.to_string(),
             link.late.to_string(),

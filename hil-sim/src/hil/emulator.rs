@@ -161,24 +161,28 @@ fn free_port() -> std::io::Result<(UdpSocket, u16)> {
     Ok((socket, port))
 }
 
-/// QEMU, its threads kept on one core and from interrupting each other, where the system has the
-/// tools: they wake each other for each byte, and on two cores take longer to wake than to work.
+/// QEMU behind the tools that the system has: one that ends it with this process, however that ends, and those that keep its threads on
+/// one core and from interrupting each other, since they wake each other for each byte, and on two cores take longer to wake than to
+/// work.
 fn program() -> Command {
     static STARTED: AtomicUsize = AtomicUsize::new(0);
     let cores = cores();
     let number = std::process::id() as usize + STARTED.fetch_add(1, Ordering::Relaxed);
-    let Some(core) = number.checked_rem(cores.len()).and_then(|turn| cores.get(turn)) else {
-        return Command::new(PROGRAM);
-    };
-    let on_one_core = || {
-        let mut command = Command::new("taskset");
-        command.args(["-c", &core.to_string(), "chrt", "-b", "0", PROGRAM]);
-        command
-    };
-    // It fails where a tool is missing or may not, and where there is no QEMU: that is better said
-    // without them.
-    let works = on_one_core().arg("--version").output().is_ok_and(|output| output.status.success());
-    if works { on_one_core() } else { Command::new(PROGRAM) }
+    let core = number.checked_rem(cores.len()).and_then(|turn| cores.get(turn)).map(u32::to_string);
+    let bound: &[&str] = &["setpriv", "--pdeathsig", "KILL"];
+    let placed = core.as_ref().map(|core| ["taskset", "-c", core, "chrt", "-b", "0"]);
+    let mut words: Vec<&str> = Vec::new();
+    for tool in [Some(bound), placed.as_ref().map(|placed| &placed[..])].into_iter().flatten() {
+        // It fails where a tool is missing or may not: then it goes without.
+        let works = Command::new(tool[0]).args(&tool[1..]).arg("true").output();
+        if works.is_ok_and(|output| output.status.success()) {
+            words.extend(tool);
+        }
+    }
+    words.push(PROGRAM);
+    let mut command = Command::new(words[0]);
+    command.args(&words[1..]);
+    command
 }
 
 /// The cores that this process may run on; none where the system doesn't tell.

@@ -9,6 +9,8 @@ pub struct Statistics {
     pub cycles: Vec<u32>,
     /// Questions that had to be sent again.
     pub repeats: u64,
+    /// Logged samples whose telemetry did not come.
+    pub telemetry_lost: u64,
     /// Frames from the target that could not be used.
     pub bad_frames: u64,
     /// Times the line was down and came back.

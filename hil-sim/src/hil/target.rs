@@ -229,6 +229,7 @@ impl Target {
     fn lockstep(&mut self, state: &State<f64>, t_s: f64) -> Result<Decision, HilError> {
         let frame = self.frame(state, t_s);
         let sequence = frame.sequence;
+        let is_asked = frame.telemetry != 0;
         let telemetry = std::cell::Cell::new(None);
         let begun = Instant::now();
         let command = self.line.ask(&MavMessage::LOAD_STATE(frame), |message| match message {
@@ -240,7 +241,9 @@ impl Target {
             _ => None,
         })?;
         self.line.statistics.latencies_s.push(begun.elapsed().as_secs_f64());
-        self.decide(&command, telemetry.take().as_ref())
+        let telemetry = telemetry.take();
+        self.line.statistics.telemetry_lost += u64::from(is_asked && telemetry.is_none());
+        self.decide(&command, telemetry.as_ref())
     }
 
     fn real_time(&mut self, state: &State<f64>, t_s: f64) -> Result<Decision, HilError> {

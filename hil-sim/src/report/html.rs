@@ -89,7 +89,10 @@ fn table(outcomes: &[&Outcome], reference: &Reference) -> Markup {
                     @for outcome in outcomes {
                         @let expected = reference.runs.get(&outcome.scenario.name).copied().unwrap_or_default();
                         tr title=(outcome.scenario.title) {
-                            td { (outcome.scenario.name) }
+                            td {
+                                (outcome.scenario.name)
+                                @if let Some(failure) = outcome.flight.end.failure() { br; strong { (failure) } }
+                            }
                             td { (outcome.scenario.controller.law.name()) }
                             @for column in COLUMNS {
                                 td {

@@ -98,10 +98,39 @@ pub fn write(
 }
 
 /// Writes beside the file first and then renames, so that whatever happens no half-written file has its name.
-pub(crate) fn write_file(path: &Path, content: &[u8]) -> Result<(), ReportError> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
+///
+/// # Errors
+/// [`ReportError`] names the file.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), ReportError> {
+    let partial = partial(path);
     std::fs::write(&partial, content)
         .and_then(|()| std::fs::rename(&partial, path))
         .map_err(|error| ReportError::File { path: path.to_owned(), error })
+}
+
+/// What a file is called while it is written.
+fn partial(path: &Path) -> PathBuf {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    partial.into()
+}
+
+/// Finds out whether a file can be written, before the work that it is for.
+///
+/// # Errors
+/// [`ReportError`] names the file.
+pub fn try_file(path: &Path) -> Result<(), ReportError> {
+    let partial = partial(path);
+    std::fs::write(&partial, [])
+        .and_then(|()| std::fs::remove_file(&partial))
+        .map_err(|error| ReportError::File { path: path.to_owned(), error })
+}
+
+/// Makes a folder for reports, and finds out whether files can be written there, before the work that they are for.
+///
+/// # Errors
+/// [`ReportError`] names the folder.
+pub fn try_folder(folder: &Path) -> Result<(), ReportError> {
+    std::fs::create_dir_all(folder).map_err(|error| ReportError::File { path: folder.to_owned(), error })?;
+    try_file(&folder.join("report"))
 }

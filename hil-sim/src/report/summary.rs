@@ -21,6 +21,9 @@ struct Run<'a> {
     duration_s: f64,
     rate_hz: f64,
     complete: bool,
+    /// How it ended, if not at its duration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failure: Option<String>,
     #[serde(flatten)]
     results: &'a Results,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -45,6 +48,7 @@ pub fn json(outcomes: &[Outcome], reference: &Reference) -> String {
             duration_s: outcome.scenario.duration_s,
             rate_hz: outcome.scenario.controller.rate_hz,
             complete: outcome.flight.end == End::Complete,
+            failure: outcome.flight.end.failure(),
             results: &outcome.flight.results,
             f32_f64_max_relative: outcome.flight.deviation.map(|deviation| deviation.max()),
             f32_f64_relative: outcome.flight.deviation,

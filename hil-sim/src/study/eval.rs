@@ -7,6 +7,7 @@ use controller::{Disturbance, Gains, Margins, Path, Real, State, TrackGains, Veh
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::json::Unique;
 use crate::describe::course::{PathSpec, ReferenceSpec, parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
 use witness::law::{Evaluation, Operating};
@@ -120,7 +121,16 @@ impl From<Margins<f64>> for MarginFields {
 /// [`Invalid`] names the field that is missing, unknown, of the wrong form or out of range, or the result that is not
 /// finite where the law is singular.
 pub fn evaluate(line: &[u8]) -> Result<Answer, Invalid> {
-    let value: Value = serde_json::from_slice(line).map_err(|error| Invalid::new("line", error))?;
+    if line.trim_ascii().is_empty() {
+        return Err(Invalid::new("line", "empty"));
+    }
+    let Unique(value) = serde_json::from_slice(line).map_err(|error| Invalid::new("line", error))?;
+    // A list would be read as the fields in their order.
+    let objects = ["vehicle", "path", "reference", "gains"];
+    let list = objects.into_iter().find(|key| value.get(key).is_some_and(Value::is_array));
+    if let Some(field) = list.or_else(|| value.is_array().then_some("line")) {
+        return Err(Invalid::new(field, "a list where an object with names is expected"));
+    }
     let request: Request = read("", value)?;
     let point = Point::of(&request)?;
     let answer = match (request.law, request.path, request.reference) {

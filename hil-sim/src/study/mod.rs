@@ -5,4 +5,5 @@ pub mod check;
 pub mod compare;
 pub mod eval;
 pub mod fit;
+mod json;
 pub mod tune;

@@ -84,6 +84,14 @@ impl Actuators {
         self.rotors.map_or(Ok(()), |rotors| rotors.check(&join(at, "rotors")))
     }
 
+    /// The most thrust that the vehicle gets for good where no more than `told` is commanded, N.
+    #[must_use]
+    pub fn most_thrust(&self, told: f64) -> f64 {
+        let range = self.thrust_range.map_or(f64::INFINITY, |[_, high]| high);
+        let rotors = self.rotors.map_or(f64::INFINITY, |rotors| 4.0 * rotors.max_thrust);
+        self.thrust_scale * told.min(range).min(rotors)
+    }
+
     /// What rotors told `command` at `t_s` are able to take of it.
     fn saturate(&self, t_s: f64, command: &Command<f64>) -> Command<f64> {
         let most = self.sag.filter(|sag| sag.during.contains(t_s)).map_or(f64::INFINITY, |sag| sag.max_thrust);

@@ -98,9 +98,16 @@ pub struct FormulaError {
     pub message: String,
 }
 
+/// Characters that an error shows of a formula, about the place at fault.
+const EXCERPT: usize = 80;
+
 impl std::fmt::Display for FormulaError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "column {} of \"{}\": {}", self.column, self.text, self.message)
+        let start = self.column.saturating_sub(1 + EXCERPT / 2);
+        let excerpt: String = self.text.chars().skip(start).take(EXCERPT).collect();
+        let before = if start > 0 { "…" } else { "" };
+        let after = if start + EXCERPT < self.text.chars().count() { "…" } else { "" };
+        write!(f, "column {} of \"{before}{excerpt}{after}\": {}", self.column, self.message)
     }
 }
 

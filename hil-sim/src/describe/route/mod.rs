@@ -121,14 +121,20 @@ impl PathSpec {
         Ok(path)
     }
 
-    /// d_C, m: distance of a point of N from the curve; NaN where it is no curve.
+    /// d_C, m: distance of a point of N from the curve. Of a curve that does not close, at the foot
+    /// that is reached from the point; NaN where no curve is found.
     #[must_use]
     pub fn distance(&self, position: [f64; 3]) -> f64 {
-        match self.curve.shape() {
-            Some((Shape::Circle, number)) => {
-                distance_to_circle(position, number(parameter!("PATH_RADIUS")), number(parameter!("PATH_P3")))
-            }
-            _ => self.lap().map_or(f64::NAN, |lap| lap.nearest(Vector3::from(position)).distance),
+        if let Some((Shape::Circle, number)) = self.curve.shape() {
+            return distance_to_circle(position, number(parameter!("PATH_RADIUS")), number(parameter!("PATH_P3")));
+        }
+        match self.lap() {
+            Ok(lap) => lap.nearest(position.into()).distance,
+            Err(_) => self
+                .searched(position.into())
+                .ok()
+                .and_then(|mut path| check::probe::local_distance(&mut path, position.into()))
+                .unwrap_or(f64::NAN),
         }
     }
 

@@ -172,10 +172,13 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         Some(_) => return Err(Invalid::new("initial", "neither \"steady\" nor a table of coordinates")),
     };
     let zeta = fields.controller.zeta.unwrap_or(zeta);
-    let limits = match fields.limits {
+    let mut limits = match fields.limits {
         Some(value) => Limits::read("limits", value, &flown)?,
         None => Limits::of(&flown),
     };
+    let told_limits = fields.controller.limits.map_or(Ok(ActuatorLimits::none()), LimitFields::limits)?;
+    // Whatever is allowed, no more can be had.
+    limits.thrust[1] = limits.thrust[1].min(fields.actuators.most_thrust(told_limits.max_thrust));
     let obstacle = fields
         .obstacle
         .map(|obstacle| {
@@ -200,7 +203,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
             latency_s: within("controller.latency_s", fields.controller.latency_s, 0.0..=0.5)?,
             rotor_lag_s: within("controller.rotor_lag_s", fields.controller.rotor_lag_s, 0.0..=0.5)?,
             observer: fields.controller.observer.params()?,
-            limits: fields.controller.limits.map_or(Ok(ActuatorLimits::none()), LimitFields::limits)?,
+            limits: told_limits,
         },
         vehicle,
         initial,

@@ -88,6 +88,10 @@ impl Store {
                 let message = "another campaign's results are here: give another folder, or delete it".to_owned();
                 return Err(StoreError::Contents { path: known, message });
             }
+            None if path.exists() => {
+                let message = "results, but no campaign.json that says of what: give another folder, or delete them";
+                return Err(StoreError::Contents { path, message: message.to_owned() });
+            }
             None => {
                 let text = serde_json::to_string_pretty(identity).unwrap_or_default();
                 crate::report::write_file(&known, text.as_bytes())

@@ -6,6 +6,9 @@ use controller::{Path, Vector3};
 
 /// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
 const SAME_POINT: f64 = 1e-6;
+/// Nodes above which not each is compared with each other.
+const MANY: usize = 4096;
+
 /// A point of a lap.
 #[derive(Clone, Copy, Debug)]
 pub struct Node {
@@ -132,17 +135,20 @@ impl Lap {
     #[must_use]
     pub fn closest_branches(&self) -> Option<Approach> {
         let mut closest: Option<Approach> = None;
-        let mut before = self.branch_feet(0);
-        for i in 0..self.nodes.len() - 1 {
-            let after = self.branch_feet(i + 1);
-            let step = self.nodes[i + 1].arc - self.nodes[i].arc;
+        // Of very many nodes every few: between two of them the curve turns by a third of a radian at most, and no branch is missed.
+        let stride = (self.nodes.len() / MANY).clamp(1, 16);
+        let mut before = self.branch_feet(0, stride);
+        let ends = (0..self.nodes.len() - 1).step_by(stride);
+        for (i, next) in ends.clone().zip(ends.skip(1).chain([self.nodes.len() - 1])) {
+            let after = self.branch_feet(next, stride);
+            let step = self.nodes[next].arc - self.nodes[i].arc;
             for from in &before {
                 // The same branch from the next node, and the join passes through the normal between the two.
                 let to = after.iter().find(|to| self.apart(from.foot.place.arc, to.foot.place.arc) < 4.0 * step);
                 if to.is_some_and(|to| from.along * to.along <= 0.0)
                     && closest.is_none_or(|closest| from.foot.distance < closest.distance + step)
                 {
-                    let found = self.squarely(i, from);
+                    let found = self.squarely_between(i, next, from);
                     if closest.is_none_or(|closest| found.distance < closest.distance) {
                         closest = Some(found);
                     }
@@ -153,21 +159,50 @@ impl Lap {
         closest
     }
 
-    /// The feet on other branches from a node.
-    fn branch_feet(&self, i: usize) -> Vec<BranchFoot> {
-        let (count, here) = (self.nodes.len() - 1, &self.nodes[i]);
-        let squared = |offset: usize| {
-            let join = self.nodes[(i + offset) % count].position() - here.position();
-            join.dot(&join)
-        };
-        (2..count - 1)
-            .filter(|&offset| squared(offset) <= squared(offset - 1) && squared(offset) < squared(offset + 1))
-            .map(|offset| {
-                let node = (i + offset) % count;
-                let foot = self.nearest_on(node, here.position());
-                BranchFoot { node, along: (foot.place.position - here.position()).dot(&here.tangent()), foot }
+    /// The feet on other branches from a node, looked for in steps of `stride` nodes.
+    fn branch_feet(&self, i: usize, stride: usize) -> Vec<BranchFoot> {
+        let count = self.nodes.len() - 1;
+        let squared = |offset: usize| self.squared(i, i + offset);
+        (2 * stride..count - stride)
+            .step_by(stride)
+            .filter(|&offset| {
+                squared(offset) <= squared(offset - stride) && squared(offset) < squared(offset + stride)
             })
+            .map(|offset| self.foot_from(i, (i + offset) % count))
             .collect()
+    }
+
+    /// The foot from the node `i` on the branch that passes near the node `from`.
+    fn foot_from(&self, i: usize, from: usize) -> BranchFoot {
+        let (count, here) = (self.nodes.len() - 1, &self.nodes[i]);
+        let mut node = from;
+        while let Some(nearer) =
+            [node + count - 1, node + 1].into_iter().find(|&other| self.squared(i, other) < self.squared(i, node))
+        {
+            node = nearer % count;
+        }
+        let foot = self.nearest_on(node, here.position());
+        BranchFoot { node, along: (foot.place.position - here.position()).dot(&here.tangent()), foot }
+    }
+
+    /// Squared distance of two nodes, counted on round the lap, m².
+    fn squared(&self, one: usize, other: usize) -> f64 {
+        let count = self.nodes.len() - 1;
+        let join = self.nodes[other % count].position() - self.nodes[one % count].position();
+        join.dot(&join)
+    }
+
+    /// [`squarely`](Self::squarely), of the two neighbouring nodes from `i` to `end` between which it lies.
+    fn squarely_between(&self, i: usize, end: usize, from: &BranchFoot) -> Approach {
+        let (mut at, mut before) = (i, *from);
+        for next in i + 1..end {
+            let after = self.foot_from(next, before.node);
+            if before.along * after.along <= 0.0 {
+                break;
+            }
+            (at, before) = (next, after);
+        }
+        self.squarely(at, &before)
     }
 
     /// The join between the nodes `i` and `i` + 1 and the branch of `from` that is normal to both, by halving.
@@ -218,6 +253,7 @@ impl Lap {
 }
 
 /// The foot on another branch of the curve, from a node.
+#[derive(Clone, Copy)]
 struct BranchFoot {
     /// The node next to the foot.
     node: usize,

@@ -69,6 +69,8 @@ pub struct Report {
 pub const SPEED_LIMIT: f64 = 100.0;
 /// Its lower end, m/s.
 pub const SLOWEST: f64 = 0.05;
+/// Nodes above which not each is asked at each speed.
+const MANY: usize = 20_000;
 
 /// Walks `path` from the point found near `hint` (N, m) and says what a lap asks of `vehicle`.
 ///
@@ -160,11 +162,13 @@ fn fastest<P: Path<f64> + ?Sized>(
     direction: f64,
 ) -> Option<Fastest> {
     path.search(&lap.nodes()[0].position());
-    let yaws: Vec<[f64; 3]> = lap.nodes().iter().map(|node| yaw(path, &node.motion)).collect();
+    // Of very many nodes every few: between two of them the curve turns by less than a fifth of a radian.
+    let nodes: Vec<&Node> = lap.nodes().iter().step_by((lap.nodes().len() / MANY).max(1)).collect();
+    let yaws: Vec<[f64; 3]> = nodes.iter().map(|node| yaw(path, &node.motion)).collect();
     let exceeds = |speed: f64| -> Option<Excess> {
         let factor = speed * direction;
         let mut demand: Option<Demand> = None;
-        for (node, yaw) in lap.nodes().iter().zip(&yaws) {
+        for (node, yaw) in nodes.iter().zip(&yaws) {
             let yaw = [yaw[0], yaw[1] * factor, yaw[2] * factor * factor];
             let Some(steady) = Steady::of(vehicle, &at_speed(&node.motion, factor), &yaw) else {
                 let place = node.place();

@@ -9,8 +9,9 @@ use controller::{Path, Series, Vector3};
 const ORDERS: usize = 7;
 /// Newton's method on a smooth regular curve doubles its digits each time; from a walk's prediction it needs four.
 const CORRECTIONS: usize = 12;
-/// Steps of a search from far away.
+/// Steps of a search from far away, and the longest of them along a curve, m.
 const STRIDES: usize = 60;
+const STRIDE: f64 = 10.0;
 /// A correction below this part of the distance from the origin (at least 1 m) is rounding.
 const CONVERGED: f64 = 1e-13;
 
@@ -43,6 +44,13 @@ impl Frame {
         };
         let finite = position.iter().chain(&g1).chain(&g2).chain(&frame.tangent).chain(&frame.surfaces);
         finite.into_iter().all(|value| value.is_finite()).then_some(frame)
+    }
+
+    /// Whether h1 and h2 have a finite value and finite gradients at a point.
+    pub fn is_defined<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> bool {
+        let outputs = path.outputs(&[0, 1, 2].map(|axis| Series::constant(position[axis])));
+        let [g1, g2] = outputs.gradients;
+        outputs.surfaces.iter().all(|h| h.value().is_finite()) && g1.iter().chain(&g2).all(|g| g.is_finite())
     }
 
     /// |∇h1 × ∇h2|, 0 where the two surfaces do not cut each other.
@@ -89,6 +97,27 @@ impl Frame {
         }
         None
     }
+}
+
+/// Distance of `position` from the curve at the foot that is reached from there, m: for a curve that is not walked round.
+pub fn local_distance<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Option<f64> {
+    let mut frame = Frame::sought(path, position, STRIDE)?;
+    let mut distance = length(&(position - frame.position));
+    let mut part = 1.0;
+    for _ in 0..STRIDES {
+        let along = (position - frame.position).dot(&frame.tangent) * part;
+        if along.abs() <= CONVERGED.sqrt() * distance.max(1.0) {
+            break;
+        }
+        let ahead = frame.position + frame.tangent * along.clamp(-STRIDE, STRIDE);
+        let next = Frame::on_curve(path, ahead, STRIDE);
+        // On a bend the step along the tangent may be too long.
+        match next.filter(|next| length(&(position - next.position)) < distance) {
+            Some(next) => (frame, distance) = (next, length(&(position - next.position))),
+            None => part *= 0.5,
+        }
+    }
+    Some(distance)
 }
 
 /// The motion through a point of the curve that keeps both surfaces at zero, order by order: the k-th coefficient of each is

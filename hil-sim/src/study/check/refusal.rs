@@ -24,6 +24,8 @@ impl fmt::Display for Place {
 pub enum Reason {
     /// No point with h1 = h2 = 0 was found.
     NoCurve,
+    /// ∇h1 × ∇h2 = 0 wherever a point was looked for.
+    Parallel,
     /// A formula has no finite value, or no finite derivatives, beyond here.
     Undefined,
     /// The derivatives that the law needs do not exist here.
@@ -79,6 +81,9 @@ impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoCurve => f.write_str("no point with h1 = h2 = 0 found, searching from here outwards"),
+            Self::Parallel => f.write_str(
+                "∇h1 × ∇h2 = 0 wherever it was tried, searching from here outwards: no two surfaces that cut each other",
+            ),
             Self::Undefined => f.write_str("a formula is not defined"),
             Self::NotSmooth => f.write_str("six derivatives do not exist"),
             Self::Ends => f.write_str("the curve ends, or its surfaces are not smooth"),

@@ -101,7 +101,9 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
     path.search(&nodes[0].position());
     let largest = nodes.iter().map(|node| node.regularity).fold(0.0, f64::max);
     for [before, here, after] in nodes.array_windows() {
-        if here.regularity > before.regularity || here.regularity > after.regularity {
+        // Next to a zero the nodes are much closer to it than half of the way to the largest value.
+        let is_least = here.regularity <= before.regularity && here.regularity <= after.regularity;
+        if !is_least || here.regularity > 0.5 * largest {
             continue;
         }
         // Golden section, until the bracket is rounding.
@@ -178,14 +180,19 @@ pub fn find<P: Path<f64> + ?Sized>(path: &mut P, hint: Vector3<f64>) -> Result<F
             (Vector3::new(part(2), part(3), part(5)), half)
         })
     });
-    let mut defined = false;
+    let (mut cuts, mut defined) = (false, false);
     for (from, stride) in std::iter::once((hint, 10.0)).chain(spread) {
-        defined |= Frame::at(path, from).is_some();
+        cuts |= Frame::at(path, from).is_some();
+        defined |= Frame::is_defined(path, from);
         if let Some(frame) = Frame::sought(path, from, stride) {
             return Ok(frame);
         }
     }
-    let reason = if defined { Reason::NoCurve } else { Reason::Undefined };
+    let reason = match (cuts, defined) {
+        (true, _) => Reason::NoCurve,
+        (false, true) => Reason::Parallel,
+        (false, false) => Reason::Undefined,
+    };
     Err(reason.at(Place { position: hint, arc: 0.0 }))
 }
 

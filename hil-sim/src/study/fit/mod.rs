@@ -5,18 +5,20 @@
 //! interpolation*, 1989), the coefficients are a linear least-squares problem, each waypoint weighted by the stretch of the loop
 //! it stands for. From there orthogonal distance regression minimizes the distances from the waypoints to their nearest points.
 
+mod columns;
 mod orthogonal;
 mod output;
 mod points;
 mod reference;
 
+pub use columns::Columns;
 pub use output::{rust, toml};
-pub use points::{PointsError, read};
+pub use points::{PointsError, Waypoints, read};
 pub use reference::LEAST_ANGLE;
 
 use crate::study::check::probe::{Frame, length};
 use crate::study::check::walk::walk;
-use crate::study::check::{Lap, Refusal};
+use crate::study::check::{Approach, Lap, Refusal};
 use controller::{Curve, FourierPath, Harmonics};
 use controller::{OutOfRange, Vector3};
 use linalg::{DMatrix, DVector};
@@ -45,6 +47,8 @@ pub struct Fit {
     pub highest: f64,
     /// The curve walked once round.
     pub lap: Lap,
+    /// Its branches at their closest, if it has branches.
+    pub branches: Option<Approach>,
 }
 
 /// Why there is no fit.
@@ -194,7 +198,7 @@ fn finish(
 
     let mut path = FourierPath::new(harmonics)?.at_speed(1.0)?;
     let lap = lap_of(&mut path, &harmonics)?;
-    lap.branches()?;
+    let branches = lap.branches()?;
 
     let amplitude = |k: usize| {
         let (a, b) = (Vector3::from(harmonics.cos[k - 1]), Vector3::from(harmonics.sin[k - 1]));
@@ -204,7 +208,18 @@ fn finish(
         (1..=count).map(|k| (k, amplitude(k))).fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
     let strays = lap.nodes().iter().map(|node| distance_to_polygon(points, node.position())).fold(0.0, f64::max);
     let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
-    Ok(Fit { harmonics, count, worst, rms, strays, reference_angle, largest, highest: amplitude(count), lap })
+    Ok(Fit {
+        harmonics,
+        count,
+        worst,
+        rms,
+        strays,
+        reference_angle,
+        largest,
+        highest: amplitude(count),
+        lap,
+        branches,
+    })
 }
 
 /// Walks a Fourier curve from σ = 0.

@@ -22,7 +22,7 @@ impl fmt::Display for Fit {
             1.0 / sharpest.curvature(),
             sharpest.place()
         )?;
-        match self.lap.closest_branches() {
+        match &self.branches {
             Some(found) => writeln!(
                 f,
                 "closest branches     {:.4} m, between {} and {:.3} m",

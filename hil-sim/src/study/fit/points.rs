@@ -3,10 +3,13 @@
 use controller::Vector3;
 use std::fmt;
 
+use super::columns::Columns;
+
 /// Coordinates beyond this are a mistake, m.
 const FURTHEST: f64 = 1e5;
-/// Fewest points that make a loop in space.
+/// Fewest points that make a loop in space, and most: more than a few for each harmonic say nothing new.
 const FEWEST: usize = 4;
+const MOST: usize = 20_000;
 /// Points closer than this part of the loop's extent are the same.
 const SAME: f64 = 1e-6;
 
@@ -36,14 +39,22 @@ impl fmt::Display for PointsError {
     }
 }
 
-/// Reads x, y, z in N (m, z down), one point a line in the order flown; the loop closes from the
-/// last to the first. A first line of names and lines that begin with # are passed over. A last
-/// point equal to the first is left out.
+/// A loop of waypoints.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Waypoints {
+    /// In N, m, in the order flown.
+    pub points: Vec<Vector3<f64>>,
+    /// How they stood in the file.
+    pub columns: Columns,
+}
+
+/// Reads one point a line in the order flown: x, y, z in N (m, z down), or what a first line of names says. The loop closes from the
+/// last to the first. Lines that begin with # are passed over. A last point equal to the first is left out.
 ///
 /// # Errors
-/// [`PointsError`] for anything that is no finite number, a missing or surplus column, a point that
-/// repeats the one before it, and fewer than four points.
-pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
+/// [`PointsError`] for anything that is no finite number, a name that is not known, a missing or surplus column, a point that
+/// repeats the one before it, fewer than four points, and more than 20,000.
+pub fn read(file: &str, text: &str) -> Result<Waypoints, PointsError> {
     let error = |line, column, message: String| PointsError { file: file.to_owned(), line, column, message };
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -52,6 +63,7 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let mut points: Vec<(u64, Vector3<f64>)> = Vec::new();
+    let mut columns = Columns::plain();
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|fault| {
             error(fault.position().map_or(0, csv::Position::line), None, format!("no line of a table: {fault}"))
@@ -62,7 +74,12 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
             .iter()
             .all(|field| field.starts_with(|c: char| c.is_alphabetic()) && field.parse::<f64>().is_err());
         if index == 0 && named {
+            columns = Columns::read(record.iter()).map_err(|(column, message)| error(line, column, message))?;
             continue;
+        }
+        if points.len() > MOST {
+            let message = format!("more than {MOST} waypoints: give every few of them");
+            return Err(error(line, None, message));
         }
         if record.len() != 3 {
             return Err(error(line, None, format!("{} values where x, y, z are 3", record.len())));
@@ -71,10 +88,11 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
         for (axis, field) in record.iter().enumerate() {
             let column = Some(axis + 1);
             let value: f64 = field.parse().map_err(|_| error(line, column, format!("\"{field}\" is no number")))?;
-            if !value.is_finite() || value.abs() > FURTHEST {
-                return Err(error(line, column, format!("{value} is outside -{FURTHEST} to {FURTHEST} m")));
+            let metres = value * columns.unit(axis);
+            if !metres.is_finite() || metres.abs() > FURTHEST {
+                return Err(error(line, column, format!("{metres} is outside -{FURTHEST} to {FURTHEST} m")));
             }
-            point[axis] = value;
+            columns.place(&mut point, axis, value);
         }
         points.push((line, point));
     }
@@ -92,5 +110,38 @@ pub fn read(file: &str, text: &str) -> Result<Vec<Vector3<f64>>, PointsError> {
     if points.len() < FEWEST {
         return Err(error(0, None, format!("{} points where a loop needs at least {FEWEST}", points.len())));
     }
-    Ok(points.into_iter().map(|(_, point)| point).collect())
+    Ok(Waypoints { points: points.into_iter().map(|(_, point)| point).collect(), columns })
+}
+
+/// Loops smaller than this, or larger, or further from the origin, are likely in other units, m.
+const LIKELY: [f64; 2] = [0.5, 5e3];
+const LIKELY_FAR: f64 = 1e4;
+
+impl Waypoints {
+    /// What makes no sense for a payload's way, and may be another unit or another frame.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        let span = |axis: usize| {
+            let values = self.points.iter().map(|point| point[axis]);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
+        };
+        let spans = [0, 1, 2].map(span);
+        let extent = spans.iter().map(|(low, high)| high - low).fold(0.0, f64::max);
+        let furthest = spans.iter().map(|(low, high)| low.abs().max(high.abs())).fold(0.0, f64::max);
+        let mut doubts = Vec::new();
+        let [least, most] = LIKELY;
+        if extent < least {
+            doubts.push(format!("the loop is {extent:.2e} m across: are these metres?"));
+        } else if extent > most {
+            doubts.push(format!("the loop is {:.1} km across: are these metres?", 1e-3 * extent));
+        }
+        if furthest > LIKELY_FAR {
+            doubts.push(format!("the loop is {:.1} km from the origin of N", 1e-3 * furthest));
+        }
+        if spans[2].0 > 0.0 {
+            doubts
+                .push("all waypoints are below the origin: z counts down; name the column up if it counts up".into());
+        }
+        doubts
+    }
 }

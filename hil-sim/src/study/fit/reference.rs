@@ -7,6 +7,8 @@ use std::f64::consts::PI;
 pub const LEAST_ANGLE: f64 = 15.0 * PI / 180.0;
 /// Directions tried first: 3° apart.
 const DIRECTIONS: usize = 2500;
+/// An improvement of the cosine by less is none.
+const SETTLED: f64 = 1e-9;
 
 /// The direction whose least angle to all `tangents` (unit vectors, either sign) is largest, with
 /// that angle (rad) and the index of the tangent it is measured to.
@@ -50,7 +52,7 @@ pub fn farthest(tangents: &[Vector3<f64>]) -> (Vector3<f64>, f64, usize) {
                 let direction = best + about.cross(&best);
                 let direction = direction / direction.dot(&direction).sqrt();
                 let found = cosine(&direction);
-                if found.0 < least.0 {
+                if found.0 < least.0 - SETTLED {
                     (best, least, improved) = (direction, found, true);
                 }
             }
