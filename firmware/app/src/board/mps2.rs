@@ -163,21 +163,21 @@ impl Serial for SerialPort {
     }
 }
 
-/// None.
+/// No rotors: commands go nowhere.
 pub struct RotorOutputs(());
 
 impl Rotors for RotorOutputs {
     fn set(&mut self, _: [f32; 4]) {}
 }
 
-/// None.
+/// No LED.
 pub struct StatusLed(());
 
 impl Led for StatusLed {
     fn toggle(&mut self) {}
 }
 
-/// None.
+/// No watchdog.
 pub struct Dog(());
 
 impl Watchdog for Dog {
@@ -202,7 +202,7 @@ pub fn start() -> Board {
 /// This board has no rotors.
 pub fn stop_rotors() {}
 
-/// Now.
+/// Resets the core at once.
 pub fn reset() -> ! {
     cortex_m::peripheral::SCB::sys_reset()
 }
