@@ -9,7 +9,8 @@ use controller::{
 
 mod plant;
 
-/// Fitted to building.csv: waypoints within 0.0013 m, length 89.685 m, least radius 4.596 m. In N, m.
+/// Fitted to building.csv: waypoints within 0.0013 m, length 89.685 m, least radius 4.596 m.
+/// In N, m.
 const PATH: controller::Harmonics<f32, 7> = controller::Harmonics {
     center: [0.0, 0.0, -15.0],
     cos: [

@@ -303,8 +303,9 @@ fn functions_whose_gradients_are_parallel_everywhere_are_no_undefined_formula() 
     assert_eq!(check(&implicit("sqrt(x - 1e6)", "z + 10")).unwrap_err().reason, Reason::Undefined);
 }
 
-/// Ripples of 6 mm make ten thousands of nodes, of which not each is compared with each other. The shortest double normal of an ellipse
-/// with half axes 7 m and 4 m is then found to within what they move it: their height, and their slope over the distance.
+/// Ripples of 6 mm make ten thousands of nodes, of which not each is compared with each other. The
+/// shortest double normal of an ellipse with half axes 7 m and 4 m is then found to within what
+/// they move it: their height, and their slope over the distance.
 #[test]
 fn a_curve_with_very_many_bends_is_walked_and_its_branches_are_found() {
     let rippled = check(&implicit("(x/7)^2 + (y/4)^2 - 1 + 1e-5*sin(1000*x)", "z + 10")).unwrap();

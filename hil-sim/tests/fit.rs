@@ -217,7 +217,8 @@ fn more_waypoints_than_a_loop_needs_are_refused() {
     assert!(error.message.contains("more than 20000"), "{error}");
 }
 
-/// A loop as thin as a hair, whose tangents are all but one: the search for a reference direction ends all the same.
+/// A loop as thin as a hair, whose tangents are all but one: the search for a reference direction
+/// ends all the same.
 #[test]
 fn a_hair_of_a_loop_is_answered() {
     let answer = fit(&loop_of(16, |s| [47.0 + 9e-5 * s.cos(), 8.0 + 8e-5 * s.sin(), 12.0 + s.sin()]), 0.05);

@@ -1,4 +1,5 @@
-//! Paths as described by a user: the law against the witness on random formulas, and the errors of a description.
+//! Paths as described by a user: the law against the witness on random formulas, and the errors of
+//! a description.
 
 use controller::Disturbance;
 use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, follow};
@@ -8,7 +9,8 @@ use serde_json::{Value, json};
 use witness::law::Operating;
 use witness::plant::VehicleParameters;
 
-/// ‖Δū‖/‖ū‖ between the f64 law and the witness on the same path; `None` where the witness finds the law singular.
+/// ‖Δū‖/‖ū‖ between the f64 law and the witness on the same path; `None` where the witness
+/// finds the law singular.
 fn difference(path: &PathSpec, x: &[f64; 16], zeta: &[f64; 4]) -> Option<f64> {
     let gains = Gains {
         k1: [64.0, 192.0, 240.0, 160.0, 60.0, 12.0],
@@ -57,7 +59,8 @@ prop_compose! {
     }
 }
 
-/// Formulas of closed curves about (0, 0, −10) with every function of the language, by random constants.
+/// Formulas of closed curves about (0, 0, −10) with every function of the language, by random
+/// constants.
 fn formula_path() -> impl Strategy<Value = Value> {
     let surface = prop::sample::select(vec![
         "(x/a)^2 + (y/b)^2 - 1",
@@ -190,7 +193,8 @@ fn errors_name_the_field_and_the_column() {
     }
 }
 
-/// Of a curve that does not close the distance is that of the foot nearby: against the least over points of the curve.
+/// Of a curve that does not close the distance is that of the foot nearby: against the least over
+/// points of the curve.
 #[test]
 fn an_open_curve_has_a_distance() {
     let open = parse_path("path", json!({ "kind": "implicit", "h1": "y - 2*sin(x/3)", "h2": "z + 10", "speed": 1 }));

@@ -111,7 +111,8 @@ struct Deaf {
 impl Read for Deaf {
     fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
         let count = self.stream.read(bytes)?;
-        // A frame of MAVLink 2 begins with its sign and has the message's number from the eighth byte on.
+        // A frame of MAVLink 2 begins with its sign and has the message's number from the eighth
+        // byte on.
         let telemetry = <link::dialect::LOAD_TELEMETRY_DATA as mavlink_core::MessageData>::ID.to_le_bytes();
         if bytes.first() == Some(&0xfd) && bytes.get(7..10) == Some(&telemetry[..3]) {
             self.heard += 1;

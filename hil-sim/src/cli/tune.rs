@@ -21,7 +21,8 @@ pub const EXAMPLES: &str = "Examples:
 /// What to tune for.
 #[derive(Args)]
 pub struct TuneArguments {
-    /// Scenario file, or name of a built-in scenario, that follows a path; left out: one made for this.
+    /// Scenario file, or name of a built-in scenario, that follows a path; left out: one made for
+    /// this.
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Flights for each setting.

@@ -40,7 +40,8 @@ pub struct Arguments {
     /// Baud rate of the serial port.
     #[arg(long, default_value_t = 921_600)]
     pub baud: u32,
-    /// QEMU's machine for the image: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386 (Cortex-M4F), mps2-an500 (Cortex-M7).
+    /// QEMU's machine for the image: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386
+    /// (Cortex-M4F), mps2-an500 (Cortex-M7).
     #[arg(long, default_value = "netduinoplus2")]
     pub machine: String,
     /// Let QEMU count instructions: cycle counts are then exact and repeatable, and flights slower.
@@ -49,7 +50,8 @@ pub struct Arguments {
     /// Fly by the target's own timer and the clock on the wall, not in lockstep.
     #[arg(long)]
     pub real_time: bool,
-    /// Do not ask for ξ, ν, margins and what the observers found, which come with the samples that are logged: for slow lines.
+    /// Do not ask for ξ, ν, margins and what the observers found, which come with the samples that
+    /// are logged: for slow lines.
     #[arg(long)]
     pub no_telemetry: bool,
     /// Seconds without an answer after which the target is lost.
@@ -115,8 +117,8 @@ pub struct Flown {
 /// Connects and flies `scenarios` one after the other.
 ///
 /// # Errors
-/// The target can't be reached, or can't fly one of the scenarios: that is found out before the first. A target that is lost ends the flights; those
-/// before are kept.
+/// The target can't be reached, or can't fly one of the scenarios: that is found out before the
+/// first. A target that is lost ends the flights; those before are kept.
 pub fn fly_all(arguments: &Arguments, scenarios: Vec<Scenario>, control: Control<'_>) -> Result<Flown, HilError> {
     let options = Options {
         pace: if arguments.real_time { Pace::RealTime } else { Pace::Lockstep },

@@ -161,9 +161,9 @@ fn free_port() -> std::io::Result<(UdpSocket, u16)> {
     Ok((socket, port))
 }
 
-/// QEMU behind the tools that the system has: one that ends it with this process, however that ends, and those that keep its threads on
-/// one core and from interrupting each other, since they wake each other for each byte, and on two cores take longer to wake than to
-/// work.
+/// QEMU behind the tools that the system has: one that ends it with this process, however that
+/// ends, and those that keep its threads on one core and from interrupting each other, since they
+/// wake each other for each byte, and on two cores take longer to wake than to work.
 fn program() -> Command {
     static STARTED: AtomicUsize = AtomicUsize::new(0);
     let cores = cores();

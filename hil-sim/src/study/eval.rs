@@ -1,7 +1,8 @@
 //! One law evaluation for one JSON object: the law, checkable from any other program.
 //!
-//! The state is taken as it is, without prediction. `"f32"` and `"f64"` are the controller's source in either scalar; the
-//! state is converted from the paper's coordinates in f64, then rounded. `"witness"` is the law by Lie derivatives.
+//! The state is taken as it is, without prediction. `"f32"` and `"f64"` are the controller's source
+//! in either scalar; the state is converted from the paper's coordinates in f64, then rounded.
+//! `"witness"` is the law by Lie derivatives.
 
 use controller::{Disturbance, Gains, Margins, Path, Real, State, TrackGains, Vehicle, VehicleParams, follow, track};
 use serde::{Deserialize, Serialize};
@@ -118,8 +119,8 @@ impl From<Margins<f64>> for MarginFields {
 /// Evaluates one line of JSON.
 ///
 /// # Errors
-/// [`Invalid`] names the field that is missing, unknown, of the wrong form or out of range, or the result that is not
-/// finite where the law is singular.
+/// [`Invalid`] names the field that is missing, unknown, of the wrong form or out of range, or the
+/// result that is not finite where the law is singular.
 pub fn evaluate(line: &[u8]) -> Result<Answer, Invalid> {
     if line.trim_ascii().is_empty() {
         return Err(Invalid::new("line", "empty"));

@@ -1,4 +1,5 @@
-//! JSON text as a value in which each key stands once: of two, a reader can't know which one was meant.
+//! JSON text as a value in which each key stands once: of two, a reader can't know which one was
+//! meant.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value};

@@ -87,7 +87,7 @@ pub struct Formula {
     code: Vec<Op>,
 }
 
-/// Where and why a text is no formula.
+/// Where and why a text is not a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FormulaError {
     /// The text.
@@ -117,8 +117,8 @@ impl Formula {
     /// Parses `text` with the given named constants.
     ///
     /// # Errors
-    /// The place and the reason, for text that is no formula, an unknown name, or a constant part
-    /// that has no finite value.
+    /// The place and the reason, for text that is not a formula, an unknown name, or a constant
+    /// part that has no finite value.
     pub fn parse(text: &str, constants: &Constants) -> Result<Self, FormulaError> {
         Ok(Self { text: text.to_owned(), code: parse(text, constants)? })
     }

@@ -1,15 +1,18 @@
-//! Paths described by a user: a curve of any kind, with a speed and a yaw along it, for the law, the witness and the eye.
+//! Paths described by a user: a curve of any kind, with a speed and a yaw along it, for the law,
+//! the witness and the eye.
 //!
-//! [`parse_path`] is the one place where a description, from a scenario file or from a line of JSON, becomes a path.
+//! [`parse_path`] is the one place where a description, from a scenario file or from a line of
+//! JSON, becomes a path.
 //!
-//! `kind` is one of the controller's curves, with the fields that [`Shape::fields`] gives it; or `"fourier"`, with `center`, `cos`, `sin`
-//! and `reference` as `hil-sim fit` writes them; or `"implicit"`, with the [formulas](crate::describe::formula) `h1` and `h2`. The yaw of an
-//! `"ellipse"` is along the tangent if it is left out. `"bent"` takes `v0` and `v1` for the speed v0 + v1 p1/a, and has the yaw 0.2 p1 if
-//! that is left out.
+//! `kind` is one of the controller's curves, with the fields that [`Shape::fields`] gives it; or
+//! `"fourier"`, with `center`, `cos`, `sin` and `reference` as `hil-sim fit` writes them; or
+//! `"implicit"`, with the [formulas](crate::describe::formula) `h1` and `h2`. The yaw of an
+//! `"ellipse"` is along the tangent if it is left out. `"bent"` takes `v0` and `v1` for the speed
+//! v0 + v1 p1/a, and has the yaw 0.2 p1 if that is left out.
 //!
-//! `speed` (m/s along ρ) is a number, a formula, or `{ max = 3.0, acceleration = 1.0 }`, slower where the curve bends. `yaw` (rad)
-//! is a number (0 if left out), a formula, `"tangent"`, or `{ x = 0.0, y = 0.0 }`, nose to a vertical line. `constants` names
-//! numbers for the formulas.
+//! `speed` (m/s along ρ) is a number, a formula, or `{ max = 3.0, acceleration = 1.0 }`, slower
+//! where the curve bends. `yaw` (rad) is a number (0 if left out), a formula, `"tangent"`, or
+//! `{ x = 0.0, y = 0.0 }`, nose to a vertical line. `constants` names numbers for the formulas.
 
 mod curve;
 mod fields;
@@ -85,7 +88,7 @@ impl PathSpec {
     /// The curve walked once round, at the first call.
     ///
     /// # Errors
-    /// [`Refusal`] with the place where it is no closed, smooth, regular curve.
+    /// [`Refusal`] with the place where it is not closed, smooth and regular.
     pub fn lap(&self) -> Result<&Lap, Refusal> {
         let walked = self.lap.get_or_init(|| {
             let mut path = self.searched(self.hint())?;
@@ -104,7 +107,8 @@ impl PathSpec {
         check::check(&mut path, vehicle, limits, self.hint())
     }
 
-    /// The vehicle's state and ζ at the start of the [lap](Self::lap), with all outputs and their derivatives zero.
+    /// The vehicle's state and ζ at the start of the [lap](Self::lap), with all outputs and their
+    /// derivatives zero.
     ///
     /// # Errors
     /// [`Refusal`] if there is no such motion.
@@ -138,7 +142,8 @@ impl PathSpec {
         }
     }
 
-    /// The curve as `points` + 1 points of N, m, the last equal to the first; none where it is no curve.
+    /// The curve as `points` + 1 points of N, m, the last equal to the first; `None` where it is
+    /// not a curve.
     #[must_use]
     pub fn outline(&self, points: usize) -> Vec<[f64; 3]> {
         let Ok(lap) = self.lap() else { return Vec::new() };

@@ -127,7 +127,8 @@ impl PathSpec {
         }
     }
 
-    /// |dρ/ds|² along ρ, of the curve of constant (h1, h2) through `p`; of a Fourier curve itself, at the point nearest to `p`.
+    /// The square of dρ/ds along ρ, of the curve of constant (h1, h2) through `p`; of a Fourier
+    /// curve itself, at the point nearest to `p`.
     fn curvature_squared<S: Scalar>(&self, p: [S; 3]) -> S {
         if let CurveSpec::Fourier(harmonics) = &self.curve {
             let [_, first, second] = curve(harmonics, foot(harmonics, p));

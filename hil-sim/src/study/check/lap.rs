@@ -1,10 +1,12 @@
-//! A closed curve as walked once: its points by arc length, the nearest of them to any point, and its distance from itself.
+//! A closed curve as walked once: its points by arc length, the nearest of them to any point, and
+//! its distance from itself.
 
 use super::probe::{Frame, Motion, length, unit_speed};
 use super::refusal::{Place, Reason, Refusal};
 use controller::{Path, Vector3};
 
-/// Branches closer than this part of the smallest radius of curvature are one point up to the walk's accuracy.
+/// Branches closer than this part of the smallest radius of curvature are one point up to the
+/// walk's accuracy.
 const SAME_POINT: f64 = 1e-6;
 /// Nodes above which not each is compared with each other.
 const MANY: usize = 4096;
@@ -130,12 +132,13 @@ impl Lap {
         self.nearest_on(best % (self.nodes.len() - 1), position)
     }
 
-    /// The two branches that come closest: points whose join is normal to the curve at both, which neighbours on a bend are
-    /// not. `None` for a curve without such a pair.
+    /// The two branches that come closest: points whose join is normal to the curve at both, which
+    /// neighbours on a bend are not. `None` for a curve without such a pair.
     #[must_use]
     pub fn closest_branches(&self) -> Option<Approach> {
         let mut closest: Option<Approach> = None;
-        // Of very many nodes every few: between two of them the curve turns by a third of a radian at most, and no branch is missed.
+        // Of very many nodes every few: between two of them the curve turns by a third of a radian
+        // at most, and no branch is missed.
         let stride = (self.nodes.len() / MANY).clamp(1, 16);
         let mut before = self.branch_feet(0, stride);
         let ends = (0..self.nodes.len() - 1).step_by(stride);
@@ -143,7 +146,8 @@ impl Lap {
             let after = self.branch_feet(next, stride);
             let step = self.nodes[next].arc - self.nodes[i].arc;
             for from in &before {
-                // The same branch from the next node, and the join passes through the normal between the two.
+                // The same branch from the next node, and the join passes through the normal
+                // between the two.
                 let to = after.iter().find(|to| self.apart(from.foot.place.arc, to.foot.place.arc) < 4.0 * step);
                 if to.is_some_and(|to| from.along * to.along <= 0.0)
                     && closest.is_none_or(|closest| from.foot.distance < closest.distance + step)
@@ -192,7 +196,8 @@ impl Lap {
         join.dot(&join)
     }
 
-    /// [`squarely`](Self::squarely), of the two neighbouring nodes from `i` to `end` between which it lies.
+    /// [`squarely`](Self::squarely), of the two neighbouring nodes from `i` to `end` between which
+    /// it lies.
     fn squarely_between(&self, i: usize, end: usize, from: &BranchFoot) -> Approach {
         let (mut at, mut before) = (i, *from);
         for next in i + 1..end {
@@ -205,7 +210,8 @@ impl Lap {
         self.squarely(at, &before)
     }
 
-    /// The join between the nodes `i` and `i` + 1 and the branch of `from` that is normal to both, by halving.
+    /// The join between the nodes `i` and `i` + 1 and the branch of `from` that is normal to both,
+    /// by halving.
     fn squarely(&self, i: usize, from: &BranchFoot) -> Approach {
         let segment = Segment::between(&self.nodes[i], &self.nodes[i + 1]);
         let (mut low, mut high) = (0.0, 1.0);
@@ -243,7 +249,8 @@ impl Lap {
         }
     }
 
-    /// The nearest point within the segments on both sides of the node `index`, which is not the last.
+    /// The nearest point within the segments on both sides of the node `index`, which is not the
+    /// last.
     fn nearest_on(&self, index: usize, position: Vector3<f64>) -> Nearest {
         let before = if index == 0 { self.nodes.len() - 2 } else { index - 1 };
         let left = Segment::between(&self.nodes[before], &self.nodes[before + 1]).nearest(position);
@@ -262,7 +269,8 @@ struct BranchFoot {
     along: f64,
 }
 
-/// The cubic with the positions and tangents of two neighbouring nodes, over a parameter from 0 to 1.
+/// The cubic with the positions and tangents of two neighbouring nodes, over a parameter from 0
+/// to 1.
 struct Segment {
     arc: f64,
     length: f64,

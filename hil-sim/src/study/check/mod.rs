@@ -1,8 +1,9 @@
 //! Can it be flown? A path is walked once round before anyone takes off.
 //!
-//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings, without jumps of speed or yaw? Then the
-//! flight: with the outputs and all their derivatives zero (the zero-dynamics manifold) the payload's motion to sixth order follows from
-//! the curve and v_d, and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
+//! First the curve: is it closed, smooth, regular (∇h1 × ∇h2 ≠ 0), free of self-crossings,
+//! without jumps of speed or yaw? Then the flight: with the outputs and all their derivatives zero
+//! (the zero-dynamics manifold) the payload's motion to sixth order follows from the curve and v_d,
+//! and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
 mod demand;
 mod jumps;
@@ -75,8 +76,8 @@ const MANY: usize = 20_000;
 /// Walks `path` from the point found near `hint` (N, m) and says what a lap asks of `vehicle`.
 ///
 /// # Errors
-/// [`Refusal`] with the place, if the curve is not closed, smooth, regular and free of self-crossings, if the speed
-/// vanishes on it, or if no thrust can give the motion.
+/// [`Refusal`] with the place, if the curve is not closed, smooth, regular and free of
+/// self-crossings, if the speed vanishes on it, or if no thrust can give the motion.
 pub fn check<P: Path<f64> + ?Sized>(
     path: &mut P,
     vehicle: &Vehicle<f64>,
@@ -140,7 +141,8 @@ fn prescribed<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Re
     if yaw.iter().all(|value| value.is_finite()) { Ok((motion, yaw)) } else { Err(Reason::Undefined) }
 }
 
-/// The vehicle's state and inputs at a point of the curve with all outputs and their derivatives zero.
+/// The vehicle's state and inputs at a point of the curve with all outputs and their derivatives
+/// zero.
 ///
 /// # Errors
 /// [`Refusal`] if speed or yaw have no value there, or no thrust can give the motion.
@@ -162,7 +164,8 @@ fn fastest<P: Path<f64> + ?Sized>(
     direction: f64,
 ) -> Option<Fastest> {
     path.search(&lap.nodes()[0].position());
-    // Of very many nodes every few: between two of them the curve turns by less than a fifth of a radian.
+    // Of very many nodes every few: between two of them the curve turns by less than a fifth of a
+    // radian.
     let nodes: Vec<&Node> = lap.nodes().iter().step_by((lap.nodes().len() / MANY).max(1)).collect();
     let yaws: Vec<[f64; 3]> = nodes.iter().map(|node| yaw(path, &node.motion)).collect();
     let exceeds = |speed: f64| -> Option<Excess> {
@@ -186,7 +189,8 @@ fn fastest<P: Path<f64> + ?Sized>(
         return None;
     }
     let (mut good, mut bad) = (SLOWEST, None);
-    // Up in steps of a fifth, so that no band of bad speeds wider than that is jumped, then halving.
+    // Up in steps of a fifth, so that no band of bad speeds wider than that is jumped, then
+    // halving.
     while bad.is_none() && good < SPEED_LIMIT {
         let next = (1.2 * good).min(SPEED_LIMIT);
         match exceeds(next) {

@@ -1,13 +1,16 @@
-//! A path seen from the host: its surfaces at a point, points on it, and the motion that keeps to it.
+//! A path seen from the host: its surfaces at a point, points on it, and the motion that keeps to
+//! it.
 //!
-//! Everything comes from the outputs (4) that the law itself evaluates, so what holds here holds in flight.
+//! Everything comes from the outputs (3.3) that the law itself evaluates, so what holds here holds
+//! in flight.
 
 use controller::Outputs;
 use controller::{Path, Series, Vector3};
 
 /// Coefficients of a payload's Taylor series, as the law takes them.
 const ORDERS: usize = 7;
-/// Newton's method on a smooth regular curve doubles its digits each time; from a walk's prediction it needs four.
+/// Newton's method on a smooth regular curve doubles its digits each time; from a walk's prediction
+/// it needs four.
 const CORRECTIONS: usize = 12;
 /// Steps of a search from far away, and the longest of them along a curve, m.
 const STRIDES: usize = 60;
@@ -65,13 +68,14 @@ impl Frame {
         -(c1 * self.surfaces[0] + c2 * self.surfaces[1]) / g1.dot(&c1)
     }
 
-    /// The point of the curve that Newton's method reaches from `position` by corrections of at most `reach` (m).
+    /// The point of the curve that Newton's method reaches from `position` by corrections of at
+    /// most `reach` (m).
     pub fn on_curve<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>, reach: f64) -> Option<Self> {
         let mut frame = Self::at(path, position)?;
         for _ in 0..CORRECTIONS {
             let correction = frame.correction();
             let size = length(&correction);
-            // A NaN is no such size either.
+            // A NaN fails the comparison.
             if size.is_nan() || size > reach {
                 return None;
             }
@@ -83,7 +87,8 @@ impl Frame {
         None
     }
 
-    /// The point of the curve found from a `position` anywhere, with steps of at most `stride` (m) on the way.
+    /// The point of the curve found from a `position` anywhere, with steps of at most `stride` (m)
+    /// on the way.
     pub fn sought<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>, stride: f64) -> Option<Self> {
         let mut position = position;
         for _ in 0..STRIDES {
@@ -99,7 +104,8 @@ impl Frame {
     }
 }
 
-/// Distance of `position` from the curve at the foot that is reached from there, m: for a curve that is not walked round.
+/// Distance of `position` from the curve at the foot that is reached from there, m: for a curve
+/// that is not walked round.
 pub fn local_distance<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Option<f64> {
     let mut frame = Frame::sought(path, position, STRIDE)?;
     let mut distance = length(&(position - frame.position));
@@ -120,8 +126,9 @@ pub fn local_distance<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64
     Some(distance)
 }
 
-/// The motion through a point of the curve that keeps both surfaces at zero, order by order: the k-th coefficient of each is
-/// linear in the k-th of the motion. `speed` gives the latter's component along ρ.
+/// The motion through a point of the curve that keeps both surfaces at zero, order by order: the
+/// k-th coefficient of each is linear in the k-th of the motion. `speed` gives the latter's
+/// component along ρ.
 fn motion<P: Path<f64> + ?Sized>(
     path: &mut P,
     frame: &Frame,
@@ -157,7 +164,8 @@ pub fn unit_speed<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame) -> Option<
     })
 }
 
-/// The motion along the curve at the path's own speed v_d: all outputs and their derivatives are zero on it.
+/// The motion along the curve at the path's own speed v_d: all outputs and their derivatives are
+/// zero on it.
 pub fn prescribed_speed<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame) -> Option<Motion> {
     motion(path, frame, |outputs, _, k| -outputs.speed_error.0[k - 1] / k as f64)
 }

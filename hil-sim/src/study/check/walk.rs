@@ -1,4 +1,5 @@
-//! Walking a curve once round: by its tangent forwards, by Newton's method back onto it, in steps that follow its bends.
+//! Walking a curve once round: by its tangent forwards, by Newton's method back onto it, in steps
+//! that follow its bends.
 
 use super::jumps::{Point, jump};
 use super::lap::{Lap, Node};
@@ -6,20 +7,23 @@ use super::probe::{Frame, Motion, length};
 use super::refusal::{Place, Reason, Refusal};
 use controller::{Path, Vector3};
 
-/// Largest turn of the tangent over one step, rad. A cubic through both ends with their tangents is then within
-/// R·0.02⁴/384 = 4e-10 R of the curve.
+/// Largest turn of the tangent over one step, rad. A cubic through both ends with their tangents is
+/// then within R·0.02⁴/384 = 4e-10 R of the curve.
 const TURN: f64 = 0.02;
-/// Largest step as a part of the curve's extent so far, so that straight stretches do not hide a bend behind them.
+/// Largest step as a part of the curve's extent so far, so that straight stretches do not hide a
+/// bend behind them.
 const STRETCH: f64 = 0.01;
 /// First step, m, and the extent that steps are first measured against.
 const FIRST_STEP: f64 = 1e-3;
-/// A step this much smaller than the extent that still turns too far is a kink: a bend of radius 5e-6 of the extent.
+/// A step this much smaller than the extent that still turns too far is a kink: a bend of radius
+/// 5e-6 of the extent.
 const SMALLEST: f64 = 1e-7;
 /// Most steps of one lap.
 const STEPS: usize = 200_000;
 /// Furthest a closed curve may be from the origin, m: the range of the controller's own curves.
 const FURTHEST: f64 = 1e5;
-/// Orders whose jumps are looked for: for these the polynomial of order six predicts to third order in the step, or better.
+/// Orders whose jumps are looked for: for these the polynomial of order six predicts to third order
+/// in the step, or better.
 const CHECKED_ORDERS: [usize; 3] = [2, 3, 4];
 /// |∇h1 × ∇h2| below this part of its largest value on the lap is zero up to rounding.
 const IRREGULAR: f64 = 1e-6;
@@ -64,7 +68,8 @@ pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Re
     Err(Reason::Endless.at(Place { position: frame.position, arc }))
 }
 
-/// The next point along the curve and the step that led there, halved until the curve is smooth over it.
+/// The next point along the curve and the step that led there, halved until the curve is smooth
+/// over it.
 fn advance<P: Path<f64> + ?Sized>(
     path: &mut P,
     frame: &Frame,
@@ -96,7 +101,8 @@ fn advance<P: Path<f64> + ?Sized>(
     }
 }
 
-/// Looks between the nodes for a point where |∇h1 × ∇h2| is zero: the surfaces touch, or the curve crosses itself.
+/// Looks between the nodes for a point where |∇h1 × ∇h2| is zero: the surfaces touch, or the
+/// curve crosses itself.
 fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
     path.search(&nodes[0].position());
     let largest = nodes.iter().map(|node| node.regularity).fold(0.0, f64::max);
@@ -127,7 +133,8 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
     Ok(())
 }
 
-/// Looks for jumps of the curve's second to fourth derivatives, where its pieces are smooth but do not fit.
+/// Looks for jumps of the curve's second to fourth derivatives, where its pieces are smooth but do
+/// not fit.
 ///
 /// From each node its Taylor polynomial says what the next node's derivatives are.
 fn smooth<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Refusal> {
@@ -168,7 +175,8 @@ pub fn angle(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
     length(&a.cross(b)).atan2(a.dot(b))
 }
 
-/// A point of the curve to start from: the one reached from `hint`, or else from points spread over ever larger boxes.
+/// A point of the curve to start from: the one reached from `hint`, or else from points spread over
+/// ever larger boxes.
 ///
 /// # Errors
 /// [`Refusal`] if there is no curve near any of them.

@@ -1,9 +1,11 @@
 //! A closed Fourier curve through waypoints, in the least-squares sense.
 //!
-//! c(σ) = a0 + Σ (A_k cos kσ + B_k sin kσ) with as few harmonics as keep every waypoint within the tolerance. For given
-//! parameters σᵢ of the waypoints, at first by the square roots of the chords (E. T. Y. Lee, *Choosing nodes in parametric curve
-//! interpolation*, 1989), the coefficients are a linear least-squares problem, each waypoint weighted by the stretch of the loop
-//! it stands for. From there orthogonal distance regression minimizes the distances from the waypoints to their nearest points.
+//! c(σ) = a0 + Σ (A_k cos kσ + B_k sin kσ) with as few harmonics as keep every waypoint within the
+//! tolerance. For given parameters σᵢ of the waypoints, at first by the square roots of the chords
+//! (E. T. Y. Lee, *Choosing nodes in parametric curve interpolation*, 1989), the coefficients are a
+//! linear least-squares problem, each waypoint weighted by the stretch of the loop it stands for.
+//! From there orthogonal distance regression minimizes the distances from the waypoints to their
+//! nearest points.
 
 mod columns;
 mod orthogonal;
@@ -94,7 +96,8 @@ pub enum FitError {
     Undetermined,
 }
 
-/// The curve with the fewest harmonics whose distance from every one of `points` is at most `tolerance` (m).
+/// The curve with the fewest harmonics whose distance from every one of `points` is at most
+/// `tolerance` (m).
 ///
 /// # Errors
 /// [`FitError`].
@@ -160,7 +163,8 @@ fn coefficients(
     };
     for axis in 0..3 {
         let wanted = DVector::from_fn(points.len(), |row, _| weights[row].sqrt() * points[row][axis]);
-        // Singular values at rounding level only: the columns are independent as long as the parameters differ.
+        // Singular values at rounding level only: the columns are independent as long as the
+        // parameters differ.
         let solution = decomposition.solve(&wanted, 1e-12).map_err(|_| FitError::Undetermined)?;
         harmonics.center[axis] = solution[0];
         for k in 1..=count {
@@ -179,7 +183,8 @@ fn finish(
     worst: (f64, usize),
     errors: &[f64],
 ) -> Result<Fit, FitError> {
-    // Enough that the tangent turns little between them, even where the shortest harmonic dominates.
+    // Enough that the tangent turns little between them, even where the shortest harmonic
+    // dominates.
     let samples = 64 * count.max(4);
     let sigma = |index: usize| TAU * index as f64 / samples as f64;
     let tangents: Vec<Vector3<f64>> = (0..samples)

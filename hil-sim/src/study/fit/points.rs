@@ -7,7 +7,8 @@ use super::columns::Columns;
 
 /// Coordinates beyond this are a mistake, m.
 const FURTHEST: f64 = 1e5;
-/// Fewest points that make a loop in space, and most: more than a few for each harmonic say nothing new.
+/// Fewest points that make a loop in space, and most: more than a few for each harmonic say nothing
+/// new.
 const FEWEST: usize = 4;
 const MOST: usize = 20_000;
 /// Points closer than this part of the loop's extent are the same.
@@ -48,12 +49,14 @@ pub struct Waypoints {
     pub columns: Columns,
 }
 
-/// Reads one point a line in the order flown: x, y, z in N (m, z down), or what a first line of names says. The loop closes from the
-/// last to the first. Lines that begin with # are passed over. A last point equal to the first is left out.
+/// Reads one point a line in the order flown: x, y, z in N (m, z down), or what a first line of
+/// names says. The loop closes from the last to the first. Lines that begin with # are passed over.
+/// A last point equal to the first is left out.
 ///
 /// # Errors
-/// [`PointsError`] for anything that is no finite number, a name that is not known, a missing or surplus column, a point that
-/// repeats the one before it, fewer than four points, and more than 20,000.
+/// [`PointsError`] for anything that is not a finite number, a name that is not known, a missing or
+/// surplus column, a point that repeats the one before it, fewer than four points, and more than
+/// 20,000.
 pub fn read(file: &str, text: &str) -> Result<Waypoints, PointsError> {
     let error = |line, column, message: String| PointsError { file: file.to_owned(), line, column, message };
     let mut reader = csv::ReaderBuilder::new()
