@@ -102,6 +102,15 @@ impl<T: Real> Actuators<T> {
         self.limits
     }
 
+    /// Thrust, and torque about b1, b2 and b3, as shares of what all rotors together could give of
+    /// each alone: what mixers that work with normalized numbers take.
+    #[must_use]
+    pub fn shares(&self, command: &Command<T>) -> [T; 4] {
+        let [thrust, roll, pitch, yaw] = *self.rotors.largest();
+        let torque = &command.torque;
+        [command.thrust / thrust, torque.x / roll, torque.y / pitch, torque.z / yaw]
+    }
+
     /// Rotor speeds as shares of the largest, 0 to 1, for a command as it was
     /// [applied](Actuation::apply). A zero command stops them; at the least thrust they idle.
     #[must_use]

@@ -41,6 +41,12 @@ impl<T: Tabled> Parameters<T> {
         Some((T::table().get(index)?, *self.0.get(index)?))
     }
 
+    /// A parameter's entry, and its default.
+    #[must_use]
+    pub fn entry(parameter: Parameter) -> Option<(&'static Entry<T>, T)> {
+        T::table().get(parameter.0).map(|entry| (entry, entry.default))
+    }
+
     /// All entries with their values.
     pub fn iter(&self) -> impl Iterator<Item = (&'static Entry<T>, T)> + '_ {
         T::table().iter().zip(self.0)

@@ -2,7 +2,7 @@
 
 use controller::{
     Command, Disturbance, Fault, Follow, Follower, Margin, Margins, Mode, Path, Real, Refused, Request, Solution,
-    State, Supervisor, Vehicle, dynamics,
+    State, Supervisor, Vector3, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
@@ -10,13 +10,15 @@ use crate::error::SetupError;
 use crate::parameters::Parameters;
 use crate::profile::{AnyPath, path};
 use crate::track::{Tracked, Tracking};
-use crate::{flight, gains, observer, parameter, timing, vehicle};
+use crate::{flight, gains, observer, parameter, setpoint, timing, vehicle};
 
 /// A controller made of [`Parameters`]: states and requests in, commands and rotor speeds out.
 #[derive(Clone, Debug)]
 pub struct Rig<T: Real, P = AnyPath<T>> {
     law: Law<T, P>,
     last: Output<T>,
+    /// Of an inner rate loop about each body axis, s.
+    time_constants: Vector3<T>,
 }
 
 #[derive(Clone, Debug)]
@@ -97,7 +99,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
             Law::Follow(Supervisor::new(follower, envelope, approach, flight::policy(parameters))?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
-        Ok(Self { law, last })
+        Ok(Self { law, last, time_constants: setpoint::time_constants(parameters) })
     }
 
     /// Starts on the path, from a stated ζ and with the integrals at zero.
@@ -160,6 +162,10 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
             Law::Follow(supervisor) => supervisor.mode(),
             Law::Track(tracking) => tracking.mode(),
         }
+    }
+
+    pub(crate) fn time_constants(&self) -> &Vector3<T> {
+        &self.time_constants
     }
 
     /// The compensator's input, m/s⁶, in the last step, if the law flew.

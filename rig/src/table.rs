@@ -3,7 +3,7 @@
 use controller::Real;
 
 use crate::entry::Entry;
-use crate::{actuators, curve, flight, gains, observer, profile, timing, vehicle};
+use crate::{actuators, curve, flight, gains, observer, profile, setpoint, timing, vehicle};
 
 /// The groups, in the order of the table.
 const GROUPS: &[&[Entry<f64>]] = &[
@@ -15,6 +15,7 @@ const GROUPS: &[&[Entry<f64>]] = &[
     observer::ENTRIES,
     flight::ENTRIES,
     actuators::ENTRIES,
+    setpoint::ENTRIES,
 ];
 
 /// How many parameters there are.

@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 mod callgraph;
 mod emulator;
 mod image;
+mod object;
 mod report;
 mod target;
 mod thumb;
@@ -32,6 +33,14 @@ enum Command {
         #[arg(long)]
         refresh: bool,
     },
+    /// Builds the C interface as one relocatable object, into dist/.
+    #[command(after_help = "Needs binutils for the machine (Debian: binutils-arm-none-eabi).\n\n\
+        Examples:\n  cargo xtask object\n  cargo xtask object host cortex-m7")]
+    Object {
+        /// What for.
+        #[arg(default_values = ["host", "cortex-m4f", "cortex-m7"])]
+        machines: Vec<object::Machine>,
+    },
     /// Runs cargo in firmware/ with whichever compiler builds for thumbv7em here.
     #[command(after_help = "Example:\n  cargo xtask thumb build --release")]
     Thumb {
@@ -44,6 +53,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Target { json, refresh } => target::run(json, refresh),
+        Command::Object { machines } => object::run(&machines),
         Command::Thumb { arguments } => {
             let status = toolchain::Toolchain::find()?.cargo(&arguments).status()?;
             anyhow::ensure!(status.success(), "cargo {} failed", arguments.join(" "));

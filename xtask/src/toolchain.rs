@@ -50,13 +50,15 @@ impl Toolchain {
     /// A cargo command in `firmware/`, its first argument the subcommand.
     pub fn cargo(&self, arguments: &[String]) -> Command {
         let firmware = root().join("firmware");
-        let mut cargo = Command::new("cargo");
+        let mut cargo = self.cargo_in(&firmware, arguments);
+        cargo.arg("--target-dir").arg(firmware.join("target"));
         cargo
-            .args(arguments)
-            .args(["--target", TRIPLE])
-            .arg("--target-dir")
-            .arg(firmware.join("target"))
-            .current_dir(firmware);
+    }
+
+    /// A cargo command in `folder`, whose own configuration it then sees.
+    pub fn cargo_in(&self, folder: &Path, arguments: &[String]) -> Command {
+        let mut cargo = Command::new("cargo");
+        cargo.args(arguments).args(["--target", TRIPLE]).current_dir(folder);
         if let Self::System { linker } = self {
             cargo
                 .args(["-Z", "build-std=core"])

@@ -264,6 +264,13 @@ impl<T: Real, const N: usize> Rotors<T, N> {
 }
 
 impl<T: Real, const N: usize> Rotors<T, N> {
+    /// Thrust, N, and torque about b1, b2 and b3, N·m, that no command for these rotors exceeds:
+    /// each rotor's largest force with its lever, added up.
+    #[must_use]
+    pub fn largest(&self) -> &[T; 4] {
+        &self.bounds
+    }
+
     /// The speeds, rad/s, of a command as it was [applied](Actuation::apply): those that
     /// [`allocate`](Self::allocate) finds for it, without looking for what has to be given up.
     #[inline]

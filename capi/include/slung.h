@@ -1,0 +1,251 @@
+/*
+ * slung.h: path following for a multirotor that carries a payload on a cable, from C99 and C++.
+ *
+ * The payload follows a path in space, at a speed and with a yaw that the path prescribes. A controller is made once of named
+ * numbers (the parameters), and then stepped once every control period with the state sampled now and what the pilot wants; it
+ * answers with thrust and torque, rotor speeds, and setpoints for an inner loop of body rates.
+ *
+ *     slung_parameters parameters;
+ *     slung_controller controller;
+ *     slung_error      error = {sizeof error};
+ *     slung_output     output = {sizeof output};
+ *
+ *     slung_parameters_default(&parameters, sizeof parameters);
+ *     slung_parameters_set(&parameters, "VEH_M_LOAD", 0.5f, &error);
+ *     slung_create(&controller, sizeof controller, &parameters, &error);
+ *     slung_take_over(&controller, &state, &applied);              in flight
+ *     slung_step(&controller, &state, SLUNG_FOLLOW, &output);      every period
+ *
+ * Axes and signs. The world N is north, east, down (n3 points DOWN, altitude is minus the third component); the body B is
+ * forward, right, down (FRD); thrust acts along -b3. The payload's position and velocity are the PAYLOAD's. The rod vector
+ * points FROM the UAV TO the payload. slung_state_from_payload and slung_state_from_cable make such a state of the numbers of an
+ * autopilot or a motion-capture system in their own axes; do not convert by hand, compilers fuse multiplications.
+ * Units are SI and stand in the names.
+ *
+ * Memory. Instances live in the caller's memory, need no destruction, and hold no pointers: they may be copied with memcpy. The
+ * library allocates nothing, has no globals, and uses no libm. A step takes a bounded time and at most 2 KiB of stack;
+ * slung_create takes at most 12 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
+ * as for any C function that uses floats.
+ *
+ * Errors. Every call returns SLUNG_OK or a negative status, and changes nothing when it refuses. slung_step is total: whatever
+ * bits the state holds, the output is finite and within the limits, and says why in mode, fault and warning.
+ */
+#ifndef SLUNG_H
+#define SLUNG_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Changes when a call or a structure changes in a way that needs recompiling. Compare with slung_abi_version(). */
+#define SLUNG_ABI_VERSION 1u
+
+/* Status: what a call returns, as int32_t. slung_status_text() says it in words. */
+enum slung_status {
+    SLUNG_OK = 0,
+    SLUNG_NULL_POINTER = -1,
+    SLUNG_MISALIGNED = -2,
+    SLUNG_STRUCT_SIZE = -3,
+    SLUNG_TOO_SMALL = -4,
+    SLUNG_NOT_CREATED = -5,
+    SLUNG_UNKNOWN_PARAMETER = -6,
+    SLUNG_OUT_OF_RANGE = -7,
+    SLUNG_NOT_WHOLE = -8,
+    SLUNG_UNSTABLE_GAINS = -9,
+    SLUNG_BAD_STATE = -10,
+    SLUNG_UNKNOWN_ENUMERATOR = -11
+};
+
+/* What the pilot wants, as uint32_t. */
+enum slung_request {
+    SLUNG_OFF = 0,    /* rotors off, at once */
+    SLUNG_IDLE = 1,   /* armed on the ground; in flight the same as hold */
+    SLUNG_FOLLOW = 2, /* join the path, then follow it */
+    SLUNG_HOLD = 3,   /* stop where it is */
+    SLUNG_LAND = 4    /* sink, and switch off on the ground */
+};
+
+/* What the vehicle is doing, as uint32_t. */
+enum slung_mode {
+    SLUNG_MODE_OFF = 0,
+    SLUNG_MODE_IDLE = 1,
+    SLUNG_MODE_JOIN = 2,
+    SLUNG_MODE_FOLLOW = 3,
+    SLUNG_MODE_HOLD = 4,
+    SLUNG_MODE_LAND = 5,
+    SLUNG_MODE_FAULT = 6
+};
+
+/* Which margin is past its warning, as uint32_t. */
+enum slung_warning {
+    SLUNG_WARNING_NONE = 0,
+    SLUNG_WARNING_ROD_ANGLE = 1,
+    SLUNG_WARNING_THRUST_ANGLE = 2,
+    SLUNG_WARNING_TENSION = 3,
+    SLUNG_WARNING_THRUST = 4,
+    SLUNG_WARNING_PATH = 5,
+    SLUNG_WARNING_REACH = 6,
+    SLUNG_WARNING_YAW = 7
+};
+
+/* Why the vehicle does not do what was asked, as uint32_t: the last fault since the request changed. */
+enum slung_fault {
+    SLUNG_FAULT_NONE = 0,
+    SLUNG_FAULT_NO_STATE = 1,     /* slung_step was given no state */
+    SLUNG_FAULT_NOT_FINITE = 2,   /* the law's answer was not finite */
+    SLUNG_FAULT_NO_PATH = 3,      /* no point of the path was found from here */
+    SLUNG_FAULT_PAYLOAD_LOST = 4, /* the payload is gone */
+    SLUNG_FAULT_STATE = 0x100,    /* plus: 0 position, 1 velocity, 2 rod, 3 rod rate, 4 attitude, 5 body rate */
+    SLUNG_FAULT_MARGIN = 0x200    /* plus an enum slung_warning: that margin is beyond its limit */
+};
+
+/* Axes of a world and a body, as uint32_t; all right-handed. */
+enum slung_frames {
+    SLUNG_NED_FRD = 0, /* north, east, down; forward, right, down: PX4, ArduPilot */
+    SLUNG_ENU_FLU = 1, /* east, north, up; forward, left, up: ROS */
+    SLUNG_NWU_FLU = 2  /* north, west, up; forward, left, up: motion capture, Crazyflie, MuJoCo */
+};
+
+/* A parameter set; slung_parameters_default makes it. */
+typedef struct slung_parameters {
+    uint64_t storage[128];
+} slung_parameters;
+
+/* A controller; slung_create makes it. */
+typedef struct slung_controller {
+    uint64_t storage[512];
+} slung_controller;
+
+/* Why a call was refused. Set struct_size to sizeof(slung_error) before the call. */
+typedef struct slung_error {
+    uint32_t struct_size;
+    int32_t status; /* enum slung_status */
+    char field[32]; /* the parameter's or field's name */
+    float value;    /* what it was given */
+    float min;      /* the least that it takes */
+    float max;      /* the largest */
+} slung_error;
+
+/* An entry of the table of parameters. Set struct_size to sizeof(slung_parameter) before the call. */
+typedef struct slung_parameter {
+    uint32_t struct_size;
+    float default_value;
+    float min;
+    float max;
+    char name[20];
+    char unit[20];
+    char text[160];
+} slung_parameter;
+
+/* The UAV as its navigation reports it, in the axes of an enum slung_frames. */
+typedef struct slung_uav {
+    float position_world_m[3];         /* of the centre of mass */
+    float velocity_world_m_s[3];       /* likewise */
+    float quaternion_body_to_world[4]; /* w, x, y, z; of unit length */
+    float body_rate_rad_s[3];
+} slung_uav;
+
+/* The state that the law is stepped on. */
+typedef struct slung_state {
+    float payload_position_ned_m[3];
+    float payload_velocity_ned_m_s[3];
+    float rod_ned[3];             /* unit vector from the UAV's centre of mass to the payload */
+    float rod_rate_ned_1_s[3];    /* its derivative, orthogonal to it */
+    float attitude_frd_to_ned[9]; /* row by row; its columns are b1, b2, b3 in N */
+    float body_rate_frd_rad_s[3];
+} slung_state;
+
+/* Thrust along -b3, and torque. */
+typedef struct slung_wrench {
+    float thrust_n;
+    float torque_frd_n_m[3];
+} slung_wrench;
+
+/* A step's answer. Set struct_size to sizeof(slung_output) before the call. */
+typedef struct slung_output {
+    uint32_t struct_size;
+    uint32_t mode;    /* enum slung_mode */
+    uint32_t fault;   /* enum slung_fault */
+    uint32_t warning; /* enum slung_warning */
+    uint32_t limited; /* 1 if limits or rotors give less than the law asked for */
+    float thrust_n;   /* for the coming period, after limits and rotors */
+    float torque_frd_n_m[3];
+    float angular_acceleration_frd_rad_s2[3]; /* what the torque gives, with what was found to disturb */
+    float body_rate_setpoint_frd_rad_s[3];    /* omega + T_i * angular acceleration, T_i = INN_T_i */
+    float thrust_normalized;                  /* share of all rotors' largest force (ROT_*) */
+    float torque_normalized_frd[3];           /* shares of what all rotors could give about each axis: PX4's convention for an X */
+    float rotor[4];                           /* speeds as shares of the largest: front right, rear left, front left, rear right */
+} slung_output;
+
+/* Where a command came from. Set struct_size to sizeof(slung_telemetry) before the call. */
+typedef struct slung_telemetry {
+    uint32_t struct_size;
+    uint32_t law_flew;             /* 1 if the law flew; if not, the numbers up to the margins are zero, but for zeta */
+    float xi[20];                  /* h1 .. h1^(5), h2 .. h2^(5), h3 .. h3^(4), h4, h4^(1); then zeros */
+    float nu[4];                   /* wanted highest derivatives of the outputs */
+    float u_zeta_m_s6;             /* the compensator's input */
+    float zeta[4];                 /* the compensator's state when the next command begins to act */
+    float margin_rod;              /* q.e3: 1 hanging straight down */
+    float margin_thrust_axis;      /* q.b3 */
+    float margin_lambda_m_s2;      /* specific force along the rod; -g hanging at rest */
+    float margin_kappa_1_s2;       /* thrust over UAV mass and rod length */
+    float margin_path;             /* the determinant of the path's 3x3 system */
+    float margin_reach;            /* what is left of the reach of a path with a nearest point; 1 for others */
+    float payload_force_ned_n[3];  /* found beyond the model's; along the rod that on both bodies */
+    float uav_force_ned_n[3];      /* found, across the rod */
+    float torque_frd_n_m[3];       /* found */
+    float implied_payload_mass_kg; /* that would explain the force along the rod in still air */
+} slung_telemetry;
+
+/* The library's version of this interface. */
+uint32_t slung_abi_version(void);
+/* Bytes that an instance really takes, at most the size of its structure here. */
+size_t slung_parameters_bytes(void);
+size_t slung_controller_bytes(void);
+
+/* All parameters at their defaults: a vehicle of 2.5 kg with 0.5 kg on 2 m, on a circle of 5 m at 1 m/s.
+ * bytes is sizeof(slung_parameters). */
+int32_t slung_parameters_default(slung_parameters *parameters, size_t bytes);
+/* How many parameters there are, and what each is: index from 0. */
+uint32_t slung_parameter_count(void);
+int32_t slung_parameter_info(uint32_t index, slung_parameter *info);
+/* Sets or reads one by its name. error may be NULL. */
+int32_t slung_parameters_set(slung_parameters *parameters, const char *name, float value, slung_error *error);
+int32_t slung_parameters_get(const slung_parameters *parameters, const char *name, float *value);
+
+/* Makes a controller, rotors off. bytes is sizeof(slung_controller); error may be NULL. */
+int32_t slung_create(slung_controller *controller, size_t bytes, const slung_parameters *parameters, slung_error *error);
+/* Takes over a flying vehicle to which applied has been applied until now, without a bump: mode hold. */
+int32_t slung_take_over(slung_controller *controller, const slung_state *state, const slung_wrench *applied);
+/* Starts on the path from a stated zeta (0 is hover): mode follow, without an approach. */
+int32_t slung_start(slung_controller *controller, const slung_state *state, const float zeta[4]);
+/* One control period (CTL_PERIOD). state may be NULL: no state this period. request is an enum slung_request; an unknown one is
+ * refused, and the last one stands. The output is written either way. */
+int32_t slung_step(slung_controller *controller, const slung_state *state, uint32_t request, slung_output *output);
+/* Turns the output's body vectors from forward-right-down into the body axes of frames, in place. */
+int32_t slung_output_in(uint32_t frames, slung_output *output);
+/* Where the last step's command came from; state is the one it was made on. */
+int32_t slung_telemetry_of(slung_controller *controller, const slung_state *state, slung_telemetry *telemetry);
+
+/* The state of a UAV and its payload, both in the world of frames. SLUNG_BAD_STATE: written, but not to be trusted. */
+int32_t slung_state_from_payload(uint32_t frames, const slung_uav *uav, const float payload_position_world_m[3],
+                                 const float payload_velocity_world_m_s[3], slung_state *state);
+/* The state of a UAV with a taut cable: its hook in body axes from the centre of mass, its length, its direction from hook to
+ * payload (a unit vector in the world), and that direction's rate. */
+int32_t slung_state_from_cable(uint32_t frames, const slung_uav *uav, const float hook_body_m[3], float cable_length_m,
+                               const float cable_world[3], const float cable_rate_world_1_s[3], slung_state *state);
+
+/* Texts; never NULL. */
+const char *slung_status_text(int32_t status);
+const char *slung_mode_text(uint32_t mode);
+const char *slung_fault_text(uint32_t fault);
+const char *slung_warning_text(uint32_t warning);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

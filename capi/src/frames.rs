@@ -1,0 +1,124 @@
+//! States of what autopilots report. The conversion is the model's; here are its pointers.
+
+use controller::{State, Vector3};
+
+use crate::axes::{Frames, Uav};
+
+use crate::pointer::{exclusive, shared};
+use crate::status::{Status, code};
+use crate::types::{SlungState, SlungUav};
+
+/// The axes of `slung_frames`.
+///
+/// # Errors
+/// [`Status::UnknownEnumerator`].
+pub fn frames(number: u32) -> Result<Frames, Status> {
+    match number {
+        0 => Ok(Frames::NedFrd),
+        1 => Ok(Frames::EnuFlu),
+        2 => Ok(Frames::NwuFlu),
+        _ => Err(Status::UnknownEnumerator),
+    }
+}
+
+fn uav(number: u32, uav: &SlungUav) -> Result<Uav<f32>, Status> {
+    Ok(Uav {
+        frames: frames(number)?,
+        position: Vector3::from(uav.position_world_m),
+        velocity: Vector3::from(uav.velocity_world_m_s),
+        quaternion: uav.quaternion_body_to_world,
+        body_rate: Vector3::from(uav.body_rate_rad_s),
+    })
+}
+
+impl From<&State<f32>> for SlungState {
+    fn from(state: &State<f32>) -> Self {
+        let r = &state.attitude;
+        Self {
+            payload_position_ned_m: state.position.into(),
+            payload_velocity_ned_m_s: state.velocity.into(),
+            rod_ned: state.rod.into(),
+            rod_rate_ned_1_s: state.rod_rate.into(),
+            attitude_frd_to_ned: [r.m11, r.m12, r.m13, r.m21, r.m22, r.m23, r.m31, r.m32, r.m33],
+            body_rate_frd_rad_s: state.body_rate.into(),
+        }
+    }
+}
+
+impl From<&SlungState> for State<f32> {
+    fn from(state: &SlungState) -> Self {
+        let [m11, m12, m13, m21, m22, m23, m31, m32, m33] = state.attitude_frd_to_ned;
+        Self {
+            position: state.payload_position_ned_m.into(),
+            velocity: state.payload_velocity_ned_m_s.into(),
+            rod: state.rod_ned.into(),
+            rod_rate: state.rod_rate_ned_1_s.into(),
+            attitude: controller::Matrix3::new(m11, m12, m13, m21, m22, m23, m31, m32, m33),
+            body_rate: state.body_rate_frd_rad_s.into(),
+        }
+    }
+}
+
+/// Writes `state`, and says whether the law can be trusted with it.
+fn write(state: &State<f32>, target: &mut SlungState) -> Result<(), Status> {
+    *target = state.into();
+    state.check().map_err(|_| Status::BadState)
+}
+
+/// The state of a UAV and its payload; see the header.
+///
+/// # Safety
+/// Pointers that are not null point to what the header says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_state_from_payload(
+    number: u32,
+    reported: *const SlungUav,
+    payload_position_world_m: *const [f32; 3],
+    payload_velocity_world_m_s: *const [f32; 3],
+    state: *mut SlungState,
+) -> i32 {
+    let convert = || {
+        // SAFETY: the caller's promise.
+        let (reported, position, velocity, state) = unsafe {
+            (
+                shared(reported)?,
+                shared(payload_position_world_m)?,
+                shared(payload_velocity_world_m_s)?,
+                exclusive(state)?,
+            )
+        };
+        write(&uav(number, reported)?.with_payload(&(*position).into(), &(*velocity).into()), state)
+    };
+    code(convert())
+}
+
+/// The state of a UAV with a taut cable on its hook; see the header.
+///
+/// # Safety
+/// As [`slung_state_from_payload`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_state_from_cable(
+    number: u32,
+    reported: *const SlungUav,
+    hook_body_m: *const [f32; 3],
+    cable_length_m: f32,
+    cable_world: *const [f32; 3],
+    cable_rate_world_1_s: *const [f32; 3],
+    state: *mut SlungState,
+) -> i32 {
+    let convert = || {
+        // SAFETY: the caller's promise.
+        let (reported, hook, cable, rate, state) = unsafe {
+            (
+                shared(reported)?,
+                shared(hook_body_m)?,
+                shared(cable_world)?,
+                shared(cable_rate_world_1_s)?,
+                exclusive(state)?,
+            )
+        };
+        let uav = uav(number, reported)?;
+        write(&uav.with_cable(&(*hook).into(), cable_length_m, &(*cable).into(), &(*rate).into()), state)
+    };
+    code(convert())
+}

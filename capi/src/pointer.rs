@@ -1,0 +1,80 @@
+//! From a caller's pointers to references, once and in one place.
+
+use core::mem::size_of;
+
+use crate::status::Status;
+
+/// What `pointer` points to.
+///
+/// # Errors
+/// [`Status::NullPointer`], [`Status::Misaligned`].
+///
+/// # Safety
+/// If it is neither null nor misaligned, it points to a `T` that nobody writes to during the call.
+pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Status> {
+    if pointer.is_null() {
+        return Err(Status::NullPointer);
+    }
+    if !pointer.is_aligned() {
+        return Err(Status::Misaligned);
+    }
+    // SAFETY: not null and aligned; the rest is the caller's promise.
+    Ok(unsafe { &*pointer })
+}
+
+/// What `pointer` points to, to be written to.
+///
+/// # Errors
+/// As [`shared`].
+///
+/// # Safety
+/// If it is neither null nor misaligned, it points to a `T` that nobody else touches during the call.
+pub unsafe fn exclusive<'a, T>(pointer: *mut T) -> Result<&'a mut T, Status> {
+    if pointer.is_null() {
+        return Err(Status::NullPointer);
+    }
+    if !pointer.is_aligned() {
+        return Err(Status::Misaligned);
+    }
+    // SAFETY: not null and aligned; the rest is the caller's promise.
+    Ok(unsafe { &mut *pointer })
+}
+
+/// A structure that begins with its size, so that it can grow at its end.
+///
+/// # Safety
+/// The first field is a `u32`.
+pub unsafe trait Sized32: Copy {
+    /// Its bytes.
+    const SIZE: u32 = size_of::<Self>() as u32;
+}
+
+/// Writes `value` where a caller has room for a structure that begins with its size: as much of it as the caller's header
+/// knows of.
+///
+/// # Errors
+/// [`Status::NullPointer`], [`Status::Misaligned`], and [`Status::StructSize`] where the caller's size is smaller than the first
+/// version's, `least`.
+///
+/// # Safety
+/// If it is neither null nor misaligned, the first four bytes hold how many bytes may be written there.
+pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> Result<(), Status> {
+    if target.is_null() {
+        return Err(Status::NullPointer);
+    }
+    if !target.is_aligned() {
+        return Err(Status::Misaligned);
+    }
+    // SAFETY: the caller's promise, and the trait's: the first field is a u32.
+    let room = unsafe { target.cast::<u32>().read() };
+    if room < least {
+        return Err(Status::StructSize);
+    }
+    let bytes = room.min(T::SIZE) as usize;
+    // SAFETY: `room` bytes may be written there, and `bytes` is at most that and at most the value's size.
+    unsafe {
+        core::ptr::copy_nonoverlapping(core::ptr::from_ref(value).cast::<u8>(), target.cast::<u8>(), bytes);
+        target.cast::<u32>().write(room);
+    }
+    Ok(())
+}

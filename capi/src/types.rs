@@ -1,0 +1,168 @@
+//! The header's structures, field by field. A test compares every size and offset with C's.
+
+use crate::pointer::Sized32;
+
+/// Why a call was refused: `slung_error`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungError {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// The status.
+    pub status: i32,
+    /// The field's or parameter's name, ended by a zero.
+    pub field: [u8; Self::FIELD_BYTES],
+    /// What it was given.
+    pub value: f32,
+    /// The least that it takes.
+    pub min: f32,
+    /// The largest.
+    pub max: f32,
+}
+
+impl SlungError {
+    /// Bytes of a field's name, with the zero that ends it.
+    pub const FIELD_BYTES: usize = 32;
+}
+
+// SAFETY: the first field is a u32; so with those below.
+unsafe impl Sized32 for SlungError {}
+
+/// An entry of the table of parameters: `slung_parameter`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungParameter {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// Its value where it is not set.
+    pub default_value: f32,
+    /// The least value.
+    pub min: f32,
+    /// The largest value.
+    pub max: f32,
+    /// Ended by a zero.
+    pub name: [u8; 20],
+    /// SI, ended by a zero.
+    pub unit: [u8; 20],
+    /// What it means, ended by a zero, cut where it is longer.
+    pub text: [u8; 160],
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungParameter {}
+
+/// The UAV as its navigation reports it: `slung_uav`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungUav {
+    /// m.
+    pub position_world_m: [f32; 3],
+    /// m/s.
+    pub velocity_world_m_s: [f32; 3],
+    /// w, x, y, z, from body to world.
+    pub quaternion_body_to_world: [f32; 4],
+    /// rad/s.
+    pub body_rate_rad_s: [f32; 3],
+}
+
+/// The state that the law is stepped on: `slung_state`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungState {
+    /// Of the payload, in N, m.
+    pub payload_position_ned_m: [f32; 3],
+    /// m/s.
+    pub payload_velocity_ned_m_s: [f32; 3],
+    /// Unit vector from UAV to payload, in N.
+    pub rod_ned: [f32; 3],
+    /// 1/s.
+    pub rod_rate_ned_1_s: [f32; 3],
+    /// Row by row, B to N.
+    pub attitude_frd_to_ned: [f32; 9],
+    /// rad/s.
+    pub body_rate_frd_rad_s: [f32; 3],
+}
+
+/// Thrust and torque: `slung_wrench`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungWrench {
+    /// Along −b3, N.
+    pub thrust_n: f32,
+    /// About b1, b2, b3, N·m.
+    pub torque_frd_n_m: [f32; 3],
+}
+
+/// A step's answer: `slung_output`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungOutput {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// `slung_mode`.
+    pub mode: u32,
+    /// `slung_fault`.
+    pub fault: u32,
+    /// `slung_warning`.
+    pub warning: u32,
+    /// 1 if limits or rotors gave less than the law asked for.
+    pub limited: u32,
+    /// N.
+    pub thrust_n: f32,
+    /// N·m.
+    pub torque_frd_n_m: [f32; 3],
+    /// rad/s².
+    pub angular_acceleration_frd_rad_s2: [f32; 3],
+    /// rad/s.
+    pub body_rate_setpoint_frd_rad_s: [f32; 3],
+    /// Share of the rotors' largest.
+    pub thrust_normalized: f32,
+    /// Shares of the rotors' largest.
+    pub torque_normalized_frd: [f32; 3],
+    /// Speeds as shares of the largest.
+    pub rotor: [f32; 4],
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungOutput {}
+
+/// Where a command came from: `slung_telemetry`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungTelemetry {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// 1 if the law flew, and the numbers up to the margins are its own.
+    pub law_flew: u32,
+    /// The outputs and their derivatives.
+    pub xi: [f32; 20],
+    /// ν.
+    pub nu: [f32; 4],
+    /// m/s⁶.
+    pub u_zeta_m_s6: f32,
+    /// ζ, m/s²⁺ᵏ.
+    pub zeta: [f32; 4],
+    /// q·e3.
+    pub margin_rod: f32,
+    /// q·b3.
+    pub margin_thrust_axis: f32,
+    /// λ, m/s².
+    pub margin_lambda_m_s2: f32,
+    /// κ, 1/s².
+    pub margin_kappa_1_s2: f32,
+    /// The path's determinant.
+    pub margin_path: f32,
+    /// What is left of the path's reach.
+    pub margin_reach: f32,
+    /// N.
+    pub payload_force_ned_n: [f32; 3],
+    /// N.
+    pub uav_force_ned_n: [f32; 3],
+    /// N·m.
+    pub torque_frd_n_m: [f32; 3],
+    /// kg.
+    pub implied_payload_mass_kg: f32,
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungTelemetry {}

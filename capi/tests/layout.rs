@@ -1,0 +1,56 @@
+//! The header's structures are laid out as the library's: every size and offset, as a C compiler has them.
+
+use std::fmt::Write as _;
+use std::mem::{offset_of, size_of};
+use std::process::Command;
+
+use capi::types::{SlungError, SlungOutput, SlungParameter, SlungState, SlungTelemetry, SlungUav, SlungWrench};
+
+/// What `layout.c` prints, by Rust.
+fn layout() -> String {
+    let mut text = String::new();
+    macro_rules! lay {
+        ($($name:literal $type:ident { $($field:ident)* })*) => {
+            $(
+                writeln!(text, "{} {}", $name, size_of::<$type>()).unwrap();
+                $(writeln!(text, "{}.{} {}", $name, stringify!($field), offset_of!($type, $field)).unwrap();)*
+            )*
+        };
+    }
+    lay! {
+        "slung_error" SlungError { struct_size status field value min max }
+        "slung_parameter" SlungParameter { struct_size default_value min max name unit text }
+        "slung_uav" SlungUav { position_world_m velocity_world_m_s quaternion_body_to_world body_rate_rad_s }
+        "slung_state" SlungState { payload_position_ned_m payload_velocity_ned_m_s rod_ned rod_rate_ned_1_s attitude_frd_to_ned body_rate_frd_rad_s }
+        "slung_wrench" SlungWrench { thrust_n torque_frd_n_m }
+        "slung_output" SlungOutput { struct_size mode fault warning limited thrust_n torque_frd_n_m angular_acceleration_frd_rad_s2 body_rate_setpoint_frd_rad_s thrust_normalized torque_normalized_frd rotor }
+        "slung_telemetry" SlungTelemetry { struct_size law_flew xi nu u_zeta_m_s6 zeta margin_rod margin_thrust_axis margin_lambda_m_s2 margin_kappa_1_s2 margin_path margin_reach payload_force_ned_n uav_force_ned_n torque_frd_n_m implied_payload_mass_kg }
+    }
+    text
+}
+
+#[test]
+fn a_c_compiler_lays_the_structures_out_as_the_library_does() {
+    let folder = env!("CARGO_MANIFEST_DIR");
+    let program = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("layout");
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    let compiled = Command::new(&compiler)
+        .args(["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-I"])
+        .arg(format!("{folder}/include"))
+        .arg(format!("{folder}/tests/layout.c"))
+        .arg("-o")
+        .arg(&program)
+        .output()
+        .unwrap_or_else(|error| panic!("{compiler}: {error}"));
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let printed = String::from_utf8(Command::new(&program).output().unwrap().stdout).unwrap();
+    // The instances' storage is the caller's: large enough, and a multiple of its alignment.
+    let (instances, structures): (Vec<_>, Vec<_>) = printed
+        .lines()
+        .partition(|line| line.starts_with("slung_parameters ") || line.starts_with("slung_controller "));
+    let bytes = |line: &&str| line.rsplit(' ').next().unwrap().parse::<usize>().unwrap();
+    assert_eq!(instances.iter().map(bytes).collect::<Vec<_>>(), [capi::PARAMETERS_BYTES, capi::CONTROLLER_BYTES]);
+    assert!(capi::slung_parameters_bytes() <= capi::PARAMETERS_BYTES);
+    assert!(capi::slung_controller_bytes() <= capi::CONTROLLER_BYTES);
+    assert_eq!(structures.join("\n") + "\n", layout());
+}

@@ -1,0 +1,56 @@
+//! `INN_*`: what an inner loop of body rates is asked for, where an autopilot has one of its own between this law and the
+//! rotors.
+//!
+//! The law's torque τ is to give the angular acceleration ω̇ = J⁻¹ (τ + τ_d − ω × J ω). A rate loop that reaches its setpoint
+//! with the time constant T_i about axis i gives it if asked for
+//!
+//! ```text
+//! ω_sp,i = ω_i + T_i ω̇_i
+//! ```
+//!
+//! Each axis has its own time constant: yaw, by the rotors' drag, is mostly many times slower than roll and pitch.
+
+use controller::{Real, State, Vector3, dynamics::Model};
+
+use crate::entry::Entry;
+use crate::parameters::Parameters;
+use crate::rig::Rig;
+use crate::run;
+
+const TIME_CONSTANT: (f64, f64) = (0.0, 5.0);
+
+pub(crate) const ENTRIES: &[Entry<f64>] = &[
+    Entry::real("INN_T_1", "time_constant[0]", "s", 0.03, TIME_CONSTANT, "Inner rate loop's time constant about b1."),
+    Entry::real("INN_T_2", "time_constant[1]", "s", 0.03, TIME_CONSTANT, "Inner rate loop's time constant about b2."),
+    Entry::real("INN_T_3", "time_constant[2]", "s", 0.03, TIME_CONSTANT, "Inner rate loop's time constant about b3."),
+];
+
+/// What an inner loop is asked for, in body axes. Thrust is the command's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateSetpoint<T> {
+    /// ω̇ under the command and the torque that was found to disturb, rad/s².
+    pub angular_acceleration: Vector3<T>,
+    /// ω_sp, rad/s.
+    pub body_rate: Vector3<T>,
+}
+
+pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> {
+    Vector3::from(parameters.run(run!("INN_T_1" to "INN_T_3")))
+}
+
+impl<T: Real, P: controller::Path<T>> Rig<T, P> {
+    /// The last step's command as an inner rate loop's setpoint, at the `state` it was made on. Without a state that can be
+    /// trusted it is to stop turning.
+    #[must_use]
+    pub fn rate_setpoint(&self, state: Option<&State<T>>) -> RateSetpoint<T> {
+        let Some(state) = state.filter(|state| state.check().is_ok()) else {
+            return RateSetpoint { angular_acceleration: Vector3::zeros(), body_rate: Vector3::zeros() };
+        };
+        let command = &self.output().command;
+        let acceleration = Model::at(self.vehicle(), state).acceleration(command, self.disturbance()).body;
+        RateSetpoint {
+            angular_acceleration: acceleration,
+            body_rate: state.body_rate + acceleration.component_mul(self.time_constants()),
+        }
+    }
+}
