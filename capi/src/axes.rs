@@ -1,20 +1,23 @@
-//! From what an autopilot or a motion-capture system reports to a [`State`], in the axes that it reports in.
+//! From what an autopilot or a motion-capture system reports to a [`State`], in the axes that it
+//! reports in.
 //!
-//! The payload hangs on a hook at r_h from the UAV's centre of mass x_Q. With the cable of length L_c along the unit vector
-//! q_c from the hook,
+//! The payload hangs on a hook at r_h from the UAV's centre of mass x_Q. With the cable of length
+//! L_c along the unit vector q_c from the hook,
 //!
 //! ```text
 //! p = x_Q + R r_h + L_c q_c,   v = v_Q + R (ω × r_h) + L_c q̇_c
 //! ```
 //!
-//! The law's rod is the line from the **centre of mass** to the payload, not the cable's: with l = |p − x_Q|
+//! The law's rod is the line from the **centre of mass** to the payload, not the cable's: with
+//! l = |p − x_Q|
 //!
 //! ```text
 //! q = (p − x_Q)/l,   q̇ = (v − v_Q − q (q·(v − v_Q)))/l
 //! ```
 //!
-//! With a hook below or beside the centre of mass the two differ, and a law that is given q_c in place of q loses the vehicle
-//! from a decimetre on. The vehicle's rod length is then the distance l at hover.
+//! With a hook below or beside the centre of mass the two differ, and a law that is given q_c in
+//! place of q loses the vehicle from a decimetre on. The vehicle's rod length is then the distance
+//! l at hover.
 
 use controller::{Matrix3, Real, State, Vector3};
 
@@ -42,7 +45,8 @@ impl Frames {
         }
     }
 
-    /// A vector in this body's axes in those of B, or the other way: the exchange is its own inverse.
+    /// A vector in this body's axes in those of B, or the other way: the exchange is its own
+    /// inverse.
     #[inline]
     #[must_use]
     pub fn body<T: Real>(self, v: &Vector3<T>) -> Vector3<T> {
@@ -64,7 +68,8 @@ impl Frames {
     }
 }
 
-/// The rotation of a unit quaternion; of one of another length, its square times a rotation, which a check can find.
+/// The rotation of a unit quaternion; of one of another length, its square times a rotation, which
+/// a check can find.
 fn rotation<T: Real>(quaternion: &[T; 4]) -> Matrix3<T> {
     let [w, x, y, z] = *quaternion;
     let twice = |a: T| a + a;
@@ -90,16 +95,19 @@ pub struct Uav<T> {
     pub position: Vector3<T>,
     /// Its velocity in the world, m/s.
     pub velocity: Vector3<T>,
-    /// Unit quaternion (w, x, y, z) from body to world. The state's [check](State::check) refuses any other length.
+    /// Unit quaternion (w, x, y, z) from body to world. The state's [check](State::check) refuses
+    /// any other length.
     pub quaternion: [T; 4],
     /// Angular velocity in body axes, rad/s.
     pub body_rate: Vector3<T>,
 }
 
 impl<T: Real> Uav<T> {
-    /// With the payload's position (m) and velocity (m/s) in the same world, from motion capture, say.
+    /// With the payload's position (m) and velocity (m/s) in the same world, from motion capture,
+    /// say.
     ///
-    /// Any numbers are allowed. Those that make no state, as a payload in the UAV's place, are found by [`State::check`].
+    /// Any numbers are allowed. Those that make no state, as a payload in the UAV's place, are
+    /// found by [`State::check`].
     #[must_use]
     pub fn with_payload(&self, position: &Vector3<T>, velocity: &Vector3<T>) -> State<T> {
         let Self { frames, .. } = *self;
@@ -118,8 +126,8 @@ impl<T: Real> Uav<T> {
         }
     }
 
-    /// With a taut cable of `length` m from a `hook` (m from the centre of mass, in body axes), along the unit vector `cable`
-    /// in the world, from hook to payload, and its rate, 1/s.
+    /// With a taut cable of `length` m from a `hook` (m from the centre of mass, in body axes),
+    /// along the unit vector `cable` in the world, from hook to payload, and its rate, 1/s.
     #[must_use]
     pub fn with_cable(&self, hook: &Vector3<T>, length: T, cable: &Vector3<T>, cable_rate: &Vector3<T>) -> State<T> {
         let rotation = rotation(&self.quaternion);
@@ -133,9 +141,11 @@ impl<T: Real> Uav<T> {
 mod tests {
     use super::*;
 
-    /// A UAV with a yaw of 30° from north to east and a pitch of 10° nose up, in each frame by hand.
+    /// A UAV with a yaw of 30° from north to east and a pitch of 10° nose up, in each frame by
+    /// hand.
     fn uav(frames: Frames) -> Uav<f64> {
-        // Yaw about down is minus yaw about up; east-north counts from east. A pitch about right is minus that about left.
+        // Yaw about down is minus yaw about up; east-north counts from east. A pitch about right is
+        // minus that about left.
         let (yaw, pitch) = match frames {
             Frames::NedFrd => (30.0_f64, 10.0_f64),
             Frames::EnuFlu => (60.0, -10.0),
@@ -195,7 +205,8 @@ mod tests {
 
     #[test]
     fn rod_and_rate_are_the_lines_own_derivatives() {
-        // The same rigid motion a little later, by differences: position of UAV and payload move with their velocities.
+        // The same rigid motion a little later, by differences: position of UAV and payload move
+        // with their velocities.
         let dt = 1e-6;
         let now = uav(Frames::NedFrd).with_payload(&Vector3::new(1.5, 2.4, -10.1), &Vector3::new(-0.2, 0.5, 0.0));
         let mut later = uav(Frames::NedFrd);

@@ -39,10 +39,12 @@ pub extern "C" fn slung_controller_bytes() -> usize {
     size_of::<Instance>()
 }
 
-/// Makes a controller of `parameters`, rotors off. Refused, nothing is made, and `error` (which may be null) tells why.
+/// Makes a controller of `parameters`, rotors off. Refused, nothing is made, and `error` (which may
+/// be null) tells why.
 ///
 /// # Safety
-/// `bytes` may be written to at `controller`; the other pointers, if not null, point to what the header says.
+/// `bytes` may be written to at `controller`; the other pointers, if not null, point to what the
+/// header says.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn slung_create(
     controller: *mut Instance,
@@ -67,7 +69,8 @@ pub unsafe extern "C" fn slung_create(
             // SAFETY: the caller's promise.
             unsafe { tell(error, status, field, numbers) }
         })?;
-        // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no drop.
+        // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no
+        // drop.
         unsafe { controller.write(Instance { created: CREATED, request: Request::Off, rig }) };
         Ok(())
     };
@@ -138,8 +141,8 @@ fn request(number: u32) -> Result<Request, Status> {
     }
 }
 
-/// A control period. The output is written whatever the state and the request are; an unknown request leaves the last one
-/// standing.
+/// A control period. The output is written whatever the state and the request are; an unknown
+/// request leaves the last one standing.
 ///
 /// # Safety
 /// As [`slung_take_over`].
@@ -191,7 +194,8 @@ fn answer(rig: &Rig<f32>, state: Option<&State<f32>>) -> SlungOutput {
     }
 }
 
-/// Turns an output's vectors, which are in forward-right-down axes, into the body axes of `slung_frames`, in place.
+/// Turns an output's vectors, which are in forward-right-down axes, into the body axes of
+/// `slung_frames`, in place.
 ///
 /// # Safety
 /// As [`slung_take_over`].

@@ -1,7 +1,8 @@
-//! The controller for C and C++. `include/slung.h` is the interface and its documentation; here is what stands behind it.
+//! The controller for C and C++. `include/slung.h` is the interface and its documentation; here is
+//! what stands behind it.
 //!
-//! Every function checks its pointers and sizes, never panics, allocates nothing and keeps nothing outside the memory that the
-//! caller hands it. `object/` makes one relocatable object of it.
+//! Every function checks its pointers and sizes, never panics, allocates nothing and keeps nothing
+//! outside the memory that the caller hands it. `object/` makes one relocatable object of it.
 #![no_std]
 
 mod axes;

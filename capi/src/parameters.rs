@@ -55,7 +55,8 @@ pub unsafe extern "C" fn slung_parameters_default(parameters: *mut Stored, bytes
     if bytes < size_of::<Stored>() {
         return Status::TooSmall as i32;
     }
-    // SAFETY: not null, aligned, and large enough by the caller's word. What was there is nothing that would have to be dropped.
+    // SAFETY: not null, aligned, and large enough by the caller's word. What was there is nothing
+    // that would have to be dropped.
     unsafe { parameters.write(Stored { created: CREATED, values: Parameters::default() }) };
     Status::Ok as i32
 }

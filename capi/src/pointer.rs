@@ -28,7 +28,8 @@ pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Status> {
 /// As [`shared`].
 ///
 /// # Safety
-/// If it is neither null nor misaligned, it points to a `T` that nobody else touches during the call.
+/// If it is neither null nor misaligned, it points to a `T` that nobody else touches during the
+/// call.
 pub unsafe fn exclusive<'a, T>(pointer: *mut T) -> Result<&'a mut T, Status> {
     if pointer.is_null() {
         return Err(Status::NullPointer);
@@ -49,15 +50,16 @@ pub unsafe trait Sized32: Copy {
     const SIZE: u32 = size_of::<Self>() as u32;
 }
 
-/// Writes `value` where a caller has room for a structure that begins with its size: as much of it as the caller's header
-/// knows of.
+/// Writes `value` where a caller has room for a structure that begins with its size: as much of it
+/// as the caller's header knows of.
 ///
 /// # Errors
-/// [`Status::NullPointer`], [`Status::Misaligned`], and [`Status::StructSize`] where the caller's size is smaller than the first
-/// version's, `least`.
+/// [`Status::NullPointer`], [`Status::Misaligned`], and [`Status::StructSize`] where the caller's
+/// size is smaller than the first version's, `least`.
 ///
 /// # Safety
-/// If it is neither null nor misaligned, the first four bytes hold how many bytes may be written there.
+/// If it is neither null nor misaligned, the first four bytes hold how many bytes may be written
+/// there.
 pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> Result<(), Status> {
     if target.is_null() {
         return Err(Status::NullPointer);
@@ -71,7 +73,8 @@ pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> 
         return Err(Status::StructSize);
     }
     let bytes = room.min(T::SIZE) as usize;
-    // SAFETY: `room` bytes may be written there, and `bytes` is at most that and at most the value's size.
+    // SAFETY: `room` bytes may be written there, and `bytes` is at most that and at most the
+    // value's size.
     unsafe {
         core::ptr::copy_nonoverlapping(core::ptr::from_ref(value).cast::<u8>(), target.cast::<u8>(), bytes);
         target.cast::<u32>().write(room);

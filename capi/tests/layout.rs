@@ -1,4 +1,5 @@
-//! The header's structures are laid out as the library's: every size and offset, as a C compiler has them.
+//! The header's structures are laid out as the library's: every size and offset, as a C compiler
+//! has them.
 
 use std::fmt::Write as _;
 use std::mem::{offset_of, size_of};

@@ -1,14 +1,16 @@
-//! `INN_*`: what an inner loop of body rates is asked for, where an autopilot has one of its own between this law and the
-//! rotors.
+//! `INN_*`: what an inner loop of body rates is asked for, where an autopilot has one of its own
+//! between this law and the rotors.
 //!
-//! The law's torque τ is to give the angular acceleration ω̇ = J⁻¹ (τ + τ_d − ω × J ω). A rate loop that reaches its setpoint
-//! with the time constant T_i about axis i gives it if asked for
+//! The law's torque τ is to give the angular acceleration ω̇ = J⁻¹ (τ + τ_d − ω × J ω). A
+//! rate loop that reaches its setpoint with the time constant T_i about axis i gives it if asked
+//! for
 //!
 //! ```text
 //! ω_sp,i = ω_i + T_i ω̇_i
 //! ```
 //!
-//! Each axis has its own time constant: yaw, by the rotors' drag, is mostly many times slower than roll and pitch.
+//! Each axis has its own time constant: yaw, by the rotors' drag, is mostly many times slower than
+//! roll and pitch.
 
 use controller::{Real, State, Vector3, dynamics::Model};
 
@@ -39,8 +41,8 @@ pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> 
 }
 
 impl<T: Real, P: controller::Path<T>> Rig<T, P> {
-    /// The last step's command as an inner rate loop's setpoint, at the `state` it was made on. Without a state that can be
-    /// trusted it is to stop turning.
+    /// The last step's command as an inner rate loop's setpoint, at the `state` it was made on.
+    /// Without a state that can be trusted it is to stop turning.
     #[must_use]
     pub fn rate_setpoint(&self, state: Option<&State<T>>) -> RateSetpoint<T> {
         let Some(state) = state.filter(|state| state.check().is_ok()) else {

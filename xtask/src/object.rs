@@ -1,4 +1,5 @@
-//! `cargo xtask object`: the C interface as one relocatable object for a linker, with nothing global but its own functions.
+//! `cargo xtask object`: the C interface as one relocatable object for a linker, with nothing
+//! global but its own functions.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,7 +15,8 @@ use crate::toolchain::{Toolchain, root};
 pub enum Machine {
     /// This computer.
     Host,
-    /// Cortex-M4 with its floating-point unit, hard-float calls; links into a Cortex-M7 program too.
+    /// Cortex-M4 with its floating-point unit, hard-float calls; links into a Cortex-M7 program
+    /// too.
     CortexM4f,
     /// Cortex-M7, hard-float calls.
     CortexM7,
@@ -35,13 +37,14 @@ impl Machine {
     }
 }
 
-/// What the linker of whoever uses an object must bring, and no more: what GCC takes for granted of any environment, and
-/// their names by ARM's ABI and on hosts.
+/// What the linker of whoever uses an object must bring, and no more: what GCC takes for granted of
+/// any environment, and their names by ARM's ABI and on hosts.
 const MEMORY: [&str; 6] = ["memcpy", "memmove", "memset", "memcmp", "memclr", "bcmp"];
 /// What the panic handler calls.
 const PANIC: &str = "slung_a_panic_is_reachable";
 
-/// Builds the objects for `machines` into dist/, with header, CMake and pkg-config files, and says what they take.
+/// Builds the objects for `machines` into dist/, with header, CMake and pkg-config files, and says
+/// what they take.
 pub fn run(machines: &[Machine]) -> Result<()> {
     let dist = root().join("dist");
     let include = dist.join("include");
@@ -109,7 +112,8 @@ fn functions() -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Links `archive` into one relocatable object that keeps the header's functions global, and no others.
+/// Links `archive` into one relocatable object that keeps the header's functions global, and no
+/// others.
 fn prelink(machine: Machine, archive: &Path, object: &Path) -> Result<()> {
     let functions = functions()?;
     let whole = object.with_extension("whole.o");
@@ -159,7 +163,8 @@ fn inspect(path: &Path) -> Result<(u64, u64)> {
     for section in elf.sections() {
         match section.kind() {
             SectionKind::Text | SectionKind::ReadOnlyData | SectionKind::ReadOnlyString => constant += section.size(),
-            // Constants with addresses in them: a loader that moves programs writes those, and nobody else does.
+            // Constants with addresses in them: a loader that moves programs writes those, and
+            // nobody else does.
             SectionKind::Data if section.name()?.starts_with(".data.rel.ro") => constant += section.size(),
             SectionKind::Data | SectionKind::UninitializedData => data += section.size(),
             _ => {}

@@ -1,6 +1,7 @@
 //! The functions of `slung.h` for a linker.
 //!
-//! The panic handler calls a function that nobody defines, so a program that links proves that no panic can be reached.
+//! The panic handler calls a function that nobody defines, so a program that links proves that no
+//! panic can be reached.
 #![no_std]
 
 pub use capi::*;
