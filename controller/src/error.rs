@@ -61,6 +61,8 @@ pub enum Refused {
     Zeta,
     /// No point of the path was found from here.
     NoPath,
+    /// The path has not been searched wholly yet: to be asked again in the next period.
+    Searching,
 }
 
 impl fmt::Display for Refused {
@@ -70,6 +72,7 @@ impl fmt::Display for Refused {
             Self::Applied => f.write_str("the command applied until now is not finite"),
             Self::Zeta => f.write_str("the stated zeta is not finite"),
             Self::NoPath => f.write_str("no point of the path was found from here"),
+            Self::Searching => f.write_str("the path is still being searched"),
         }
     }
 }

@@ -289,8 +289,8 @@ impl<T: Real, F: Implicit<T>, const K: usize> Curve<T> for AnyCurve<T, F, K> {
         each!(self, curve => curve.locate(position))
     }
 
-    fn search(&mut self, position: &Vector3<T>) {
-        each!(self, curve => curve.search(position));
+    fn search(&mut self, position: &Vector3<T>) -> bool {
+        each!(self, curve => curve.search(position))
     }
 }
 

@@ -16,6 +16,7 @@
 use model::{OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;
 
+use crate::error::Refused;
 use crate::law::lift::PositionSeries;
 use crate::path::{Outputs, Path};
 use crate::ranges::{
@@ -167,24 +168,30 @@ impl<T: Real> Approach<T> {
 
     /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
     pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
-        path.search(position);
+        while !path.search(position) {}
         Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
     }
 
-    /// Begins at `state`. `false`, and nothing changed, if no point of the path is found.
-    pub(crate) fn join<P: Path<T> + ?Sized>(&mut self, path: &mut P, pace: &Pace<T>, state: &State<T>) -> bool {
+    /// Begins at `state`, if the path has been searched and a point of it is found; v_d is flown times `factor`.
+    pub(crate) fn join<P: Path<T> + ?Sized>(
+        &mut self,
+        path: &mut P,
+        pace: &Pace<T>,
+        state: &State<T>,
+        factor: T,
+    ) -> Result<(), Refused> {
         let State { position, velocity, .. } = state;
-        path.search(position);
-        let Some(Nearest { point, outputs, path_det }) = nearest(path, position) else {
-            return false;
-        };
+        if !path.search(position) {
+            return Err(Refused::Searching);
+        }
+        let Nearest { point, outputs, path_det } = nearest(path, position).ok_or(Refused::NoPath)?;
         let yaw = (outputs.yaw.value() - Yaw::of(state).angle).wrap_angle();
         *self = Self {
             path_det,
-            speed: outputs.speed_error.value(),
+            speed: outputs.speed_error.value() * factor,
             ..Self::over(pace, position - point, *velocity, yaw)
         };
-        true
+        Ok(())
     }
 
     /// Begins `displacement` (m) away, moving at `velocity` (m/s) as seen from where it leads to, with `yaw` (rad) to turn.

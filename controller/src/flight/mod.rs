@@ -2,4 +2,5 @@
 
 pub(crate) mod approach;
 pub(crate) mod envelope;
+pub(crate) mod speed_factor;
 pub(crate) mod supervisor;

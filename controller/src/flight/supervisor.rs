@@ -400,6 +400,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 self.sampler.carry_on(sampled);
                 self.mode = Mode::Join;
             }
+            Err(Refused::Searching) => {}
             Err(_) => self.enter_hold(sampled, Some(Fault::NoPath)),
         }
     }

@@ -7,6 +7,7 @@ use model::{Disturbance, OutOfRange, Real, State, Vehicle, Yaw};
 
 use crate::error::Refused;
 use crate::flight::approach::{Approach, Pace};
+use crate::flight::speed_factor::SpeedFactor;
 use crate::law::gains::{self, GainError};
 use crate::law::lift::{Lift, lift};
 use crate::law::lower::lower;
@@ -160,6 +161,9 @@ impl<T: Real> Solution<T, Xi<T>> {
 /// How long integral action waits after the thrust was limited, s: five time constants of a pole at −1.
 const RECOVERY: f64 = 5.0;
 
+/// Speed below which the payload rests, m/s.
+const AT_REST: f64 = 0.01;
+
 /// The path-following law with its memory.
 #[derive(Clone, Debug)]
 pub struct Follow<T, P> {
@@ -172,6 +176,11 @@ pub struct Follow<T, P> {
     /// Time since the thrust was limited, s.
     unsaturated: T,
     approach: Approach<T>,
+    speed_factor: SpeedFactor<T>,
+    /// v_d at the last answer, m/s.
+    prescribed: T,
+    /// How long the payload has rested at the path's stop, s.
+    rested: T,
 }
 
 impl<T: Real, P: Path<T>> Follow<T, P> {
@@ -192,6 +201,9 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
             solution: Solution::default(),
             unsaturated: T::lit(RECOVERY),
             approach: Approach::none(),
+            speed_factor: SpeedFactor::none(),
+            prescribed: T::zero(),
+            rested: T::zero(),
         })
     }
 
@@ -208,6 +220,40 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
     /// ξ̃ = ∫(h1, h2, h3) up to the next sample.
     pub fn integral(&self) -> &[T; 3] {
         &self.integral
+    }
+
+    /// Has the path flown at `factor` times its speed, smoothly from the factor that is flown: 0 stops, less goes back, at most 2
+    /// either way. NaN changes nothing.
+    pub fn set_speed_factor(&mut self, factor: T) {
+        self.speed_factor.wish(factor);
+    }
+
+    /// The factor of the path's speed now.
+    pub fn speed_factor(&self) -> T {
+        self.speed_factor.value()
+    }
+
+    /// Goes on from the path's stop where the payload rests. `false`, and nothing changed, if it does not or nothing comes after.
+    #[cold]
+    pub fn go_on(&mut self) -> bool {
+        let goes_on = self.rested > T::zero() && self.path.go_on();
+        if goes_on {
+            self.speed_factor.restart();
+        }
+        self.rested = T::zero();
+        goes_on
+    }
+
+    /// Counts how long the payload has rested at the path's stop, and goes on when that is long enough.
+    #[inline(always)]
+    fn rest(&mut self, period: T) {
+        let Some(dwell) = self.path.dwell() else { return };
+        let [error, ..] = self.solution.xi.h3;
+        let is_at_rest = self.prescribed.abs() < T::lit(AT_REST) && error.abs() < T::lit(AT_REST);
+        self.rested = if is_at_rest { self.rested + period } else { T::zero() };
+        if self.rested > dwell {
+            self.go_on();
+        }
     }
 
     /// Nothing integrated, and no limit met: as a law that has just been made.
@@ -229,6 +275,8 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
         if let Some(fading) = fading {
             self.approach.fade(&fading, &mut outputs);
         }
+        self.prescribed = outputs.prescribed.value();
+        self.speed_factor.apply(*horizon, &mut outputs);
         let yaw = Yaw::of(state);
         self.solution.read(&self.gains, &self.integral, &yaw, &outputs);
         self.solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
@@ -242,6 +290,11 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     #[inline(always)]
     fn accept(&mut self, period: T, is_saturated: bool) {
         self.approach.advance(period);
+        self.rest(period);
+        if let Some(is_backward) = self.speed_factor.advance(period) {
+            let has_own = self.path.set_backward(is_backward);
+            self.speed_factor.turned(has_own);
+        }
         // What the actuators can't give, no integral may ask for ever louder; nor count the way back for an error that stays.
         self.unsaturated = if is_saturated { T::zero() } else { self.unsaturated + period };
         if self.unsaturated >= T::lit(RECOVERY) {
@@ -258,9 +311,7 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     }
 
     fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused> {
-        if !self.approach.join(&mut self.path, pace, state) {
-            return Err(Refused::NoPath);
-        }
+        self.approach.join(&mut self.path, pace, state, self.speed_factor.effective())?;
         self.reset_integrals();
         Ok(())
     }

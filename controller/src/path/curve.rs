@@ -57,8 +57,12 @@ pub trait Curve<T: Real> {
     /// Evaluates the curve's functions along `position`.
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
 
-    /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
-    fn search(&mut self, _position: &Vector3<T>) {}
+    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m), as far as one control period
+    /// has time for: called once a period when a controller starts, until it is `true`. A curve that knows no nearest point
+    /// has nothing to do.
+    fn search(&mut self, _position: &Vector3<T>) -> bool {
+        true
+    }
 
     /// The curve at a constant `speed` (m/s along ρ, negative against it) with yaw 0.
     ///

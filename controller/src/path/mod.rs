@@ -8,6 +8,17 @@
 //! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`]. A curve of one's own is
 //! a [`Formula`], two lines of ordinary arithmetic; so is a profile.
 
+/// Repeats a block for each order, which is a constant in it: the compiler unrolls loops over orders only while they are few, and a
+/// coefficient's loop has its bounds then.
+macro_rules! for_each_order {
+    ($order:ident in [$($number:literal)*] $block:block) => {
+        $({
+            const $order: usize = $number;
+            $block
+        })*
+    };
+}
+
 mod bent;
 mod circle;
 mod curve;
@@ -15,9 +26,12 @@ mod draped;
 mod ellipse;
 mod field;
 mod fourier;
+mod harmonics;
 mod implicit;
 mod nearest;
+pub(crate) mod route;
 mod speed;
+mod spline;
 mod superellipse;
 mod tilted;
 mod yaw;
@@ -27,9 +41,11 @@ pub use circle::Circle;
 pub use curve::{Curve, Curved, Located};
 pub use ellipse::Ellipse;
 pub use field::{Linear, PointingAt, ScalarField};
-pub use fourier::FourierPath;
+pub use fourier::{FourierPath, NEWTON_STEPS};
+pub use harmonics::Harmonics;
 pub use implicit::{Formula, Implicit};
-pub use nearest::{Harmonics, NEWTON_STEPS};
+pub use route::build::{Built, RouteError, RoutePace, Waypoint, build_route};
+pub use route::{End, Knot, Route, RouteTable, Run, Table};
 pub use speed::{ConstantSpeed, CurvatureLimited, SpeedProfile};
 pub use superellipse::Superellipse;
 pub use tilted::Tilted;
@@ -51,6 +67,8 @@ pub struct Outputs<T> {
     pub tangent: Vector3<T>,
     /// h3 = ρ·v − v_d, m/s, orders 0 to 5.
     pub speed_error: Series<T, 6>,
+    /// v_d alone, m/s along ρ, orders 0 to 5.
+    pub prescribed: Series<T, 6>,
     /// ψ_d, rad, orders 0 to 2. Any representative modulo 2π: the law wraps the difference.
     pub yaw: Series<T, 3>,
     /// What is left of the curve's reach, see [`Located::reach_margin`].
@@ -58,6 +76,20 @@ pub struct Outputs<T> {
 }
 
 impl<T: Real> Outputs<T> {
+    /// Of a path that has no point: all zeros.
+    fn none() -> Self {
+        let (zero, vector) = (T::zero(), Vector3::zeros());
+        Self {
+            surfaces: [Series::constant(zero); 2],
+            gradients: [vector; 2],
+            tangent: vector,
+            speed_error: Series::constant(zero),
+            prescribed: Series::constant(zero),
+            yaw: Series::constant(zero),
+            reach_margin: zero,
+        }
+    }
+
     /// The vector whose products with ∇h1, ∇h2 and ρ are `products`, and the determinant (∇h1 × ∇h2)·ρ of this system; infinite or NaN
     /// where that is zero.
     #[inline(never)]
@@ -77,8 +109,27 @@ pub trait Path<T: Real> {
     /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
 
-    /// Called with the payload's position (N, m) when a controller starts: the place for a search of the whole curve.
-    fn search(&mut self, _position: &Vector3<T>) {}
+    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m), as far as one control period has time
+    /// for: called once a period when a controller starts, until it is `true`. A curve that knows no nearest point has nothing to do.
+    fn search(&mut self, _position: &Vector3<T>) -> bool {
+        true
+    }
+
+    /// How long the payload is to rest at the stop it is led to, s; infinite: until it is told to go on. `None`: there is no stop.
+    fn dwell(&self) -> Option<T> {
+        None
+    }
+
+    /// Goes on from that stop, where the payload is at rest. `false` if nothing comes after it.
+    fn go_on(&mut self) -> bool {
+        false
+    }
+
+    /// Turns v_d round, or back, at a moment when none is flown. `false` if the path has no speed of its own for the way back: then it
+    /// does nothing, and minus v_d is flown.
+    fn set_backward(&mut self, _is_backward: bool) -> bool {
+        false
+    }
 }
 
 impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
@@ -87,8 +138,20 @@ impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
         (**self).outputs(position)
     }
 
-    fn search(&mut self, position: &Vector3<T>) {
-        (**self).search(position);
+    fn search(&mut self, position: &Vector3<T>) -> bool {
+        (**self).search(position)
+    }
+
+    fn dwell(&self) -> Option<T> {
+        (**self).dwell()
+    }
+
+    fn go_on(&mut self) -> bool {
+        (**self).go_on()
+    }
+
+    fn set_backward(&mut self, is_backward: bool) -> bool {
+        (**self).set_backward(is_backward)
     }
 }
 
@@ -120,17 +183,19 @@ where
     #[inline(never)]
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
         let located = self.curve.locate(position);
+        let prescribed = self.speed.speed(&self.curve, position, &located);
         Outputs {
             surfaces: located.surfaces,
             gradients: located.gradients,
             tangent: located.tangent(),
-            speed_error: located.speed - self.speed.speed(&self.curve, position, &located),
+            speed_error: located.speed - prescribed,
+            prescribed,
             yaw: self.yaw.yaw(position, &located),
             reach_margin: located.reach_margin,
         }
     }
 
-    fn search(&mut self, position: &Vector3<T>) {
-        self.curve.search(position);
+    fn search(&mut self, position: &Vector3<T>) -> bool {
+        self.curve.search(position)
     }
 }

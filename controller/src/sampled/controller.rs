@@ -136,7 +136,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         if !applied.is_finite() {
             return Err(Refused::Applied);
         }
-        self.law.join(state, pace)?;
+        loop {
+            match self.law.join(state, pace) {
+                Err(Refused::Searching) => {}
+                joined => break joined?,
+            }
+        }
         self.is_started = true;
         self.sampler.take_over(state, applied)
     }

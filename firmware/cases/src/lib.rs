@@ -44,6 +44,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("ellipse", paths::ellipse().and_then(|path| Following::new(path, paths::on_ellipse)));
     visitor.visit("bent", paths::bent().and_then(|path| Following::new(path, paths::on_bent)));
     visitor.visit("fourier8", paths::fourier8().and_then(|path| Following::new(path, paths::on_fourier8)));
+    visitor.visit("route", paths::route().and_then(|path| Following::new(path, paths::on_route)));
     let joining = |path| Following::new(path, paths::on_circle).map(Following::joining);
     visitor.visit("joining", paths::circle().and_then(joining));
     visitor.visit("track", Tracking::new());

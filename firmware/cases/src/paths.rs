@@ -3,7 +3,8 @@
 use core::f32::consts::PI;
 
 use controller::{
-    AlongTangent, Bent, Circle, Curve, Ellipse, Formula, FourierPath, Harmonics, Linear, Path, Real, Vector3,
+    AlongTangent, Bent, Circle, Curve, Ellipse, Formula, FourierPath, Harmonics, Knot, Linear, Path, Real, Route,
+    RoutePace, RouteTable, Run, Vector3, Waypoint, build_route,
 };
 
 use crate::Random;
@@ -38,6 +39,35 @@ pub fn bent() -> Option<impl Path<f32>> {
 /// A knotted loop of eight harmonics, yaw along it.
 pub fn fourier8() -> Option<impl Path<f32>> {
     Some(FourierPath::new(KNOT).ok()?.at_speed(SPEED).ok()?.with_yaw(AlongTangent))
+}
+
+/// A trefoil as a route.
+pub fn route() -> Option<impl Path<f32>> {
+    let waypoints: [Waypoint<f32>; TREFOIL] = core::array::from_fn(|i| Waypoint {
+        point: trefoil(i as f32 * (2.0 * PI / TREFOIL as f32)).into(),
+        corner: None,
+        speed: SPEED,
+        yaw: None,
+        stop: None,
+    });
+    // A closed route repeats its first seven knots.
+    let mut table = RouteTable { knots: [Knot::default(); TREFOIL + 7], runs: [Run::default(); 1] };
+    build_route(&waypoints, true, &RoutePace::default(), &mut table.knots, &mut table.runs).ok()?;
+    Route::new(table).ok()
+}
+
+/// Waypoints of the trefoil.
+const TREFOIL: usize = 48;
+
+fn trefoil(angle: f32) -> Vector3<f32> {
+    let ((sin_2, cos_2), (sin_3, cos_3)) = (Real::sin_cos(2.0 * angle), Real::sin_cos(3.0 * angle));
+    let radius = A + 2.0 * cos_3;
+    Vector3::new(radius * cos_2, radius * sin_2, P3 + 1.5 * sin_3)
+}
+
+/// A point of the trefoil.
+pub fn on_route(random: &mut Random) -> Vector3<f32> {
+    trefoil(random.around_zero(PI))
 }
 
 /// Eight harmonics that fall off as a fitted loop's do.

@@ -15,8 +15,10 @@
 mod extended;
 mod linear;
 mod path;
+mod route;
 
 pub use path::{Bent, Circle, Ellipse, WitnessPath, outputs};
+pub use route::Route;
 
 use crate::jet::Scalar;
 use crate::plant::{VehicleParameters, index};

@@ -1,0 +1,239 @@
+//! Pause, go on, slower, faster, back: a factor of v_d that changes smoothly.
+//!
+//! r(t) v_d(p) in place of v_d(p), with r behind six equal lags a/(s + a) from what is wished: r
+//! has five continuous derivatives, as many as reach the torque, at whatever moment the wish
+//! changes, and goes from one value to another without overshoot.
+
+// As in series.rs: indices run over compile-time bounds.
+#![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
+
+use model::{Real, Series};
+
+use crate::path::Outputs;
+
+/// Lags in a row.
+const LAGS: usize = 6;
+
+/// a, 1/s: from rest to v_d in some 5 s, with 0.36/s at most.
+const RATE: f64 = 2.0;
+
+/// What is left of a change that counts as none; and of a stop before the way is turned.
+const SETTLED: f64 = 1e-6;
+const STOPPED: f64 = 1e-3;
+
+/// The most that can be wished, either way.
+const MOST: f64 = 2.0;
+
+/// e^(−a t) (a t)ᵏ/k!: what a time leaves of the lags' deviations.
+struct Decay<T>([T; LAGS]);
+
+impl<T: Real> Decay<T> {
+    fn over(time: T) -> Self {
+        let x = time * T::lit(RATE);
+        let mut decay = [(-x).exp(); LAGS];
+        for k in 1..LAGS {
+            decay[k] = decay[k - 1] * x * T::RECIPROCAL[k];
+        }
+        Self(decay)
+    }
+
+    fn of(&self, deviations: &[T; LAGS]) -> [T; LAGS] {
+        let mut after = [T::zero(); LAGS];
+        for lag in 0..LAGS {
+            for k in 0..=lag {
+                after[lag] += self.0[k] * deviations[lag - k];
+            }
+        }
+        after
+    }
+}
+
+/// The factor r of v_d, and how it changes. The way back is flown with a positive r and v_d turned
+/// round, after a stop: a path may have another speed there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SpeedFactor<T> {
+    wished: T,
+    /// What is wished once it has stopped.
+    after: Option<T>,
+    is_backward: bool,
+    /// 1, or −1 on the way back of a path that has no speed of its own for it.
+    sign: T,
+    /// Of each lag's output from what is wished; r is the last one's.
+    deviations: [T; LAGS],
+    is_settled: bool,
+}
+
+impl<T: Real> SpeedFactor<T> {
+    /// 1.
+    pub(crate) fn none() -> Self {
+        let deviations = [T::zero(); LAGS];
+        let sign = T::one();
+        let (wished, after, is_backward, is_settled) = (sign, None, false, true);
+        Self { wished, after, is_backward, sign, deviations, is_settled }
+    }
+
+    /// r now, negative on the way back.
+    pub(crate) fn value(&self) -> T {
+        let [.., last] = self.deviations;
+        let value = self.wished + last;
+        if self.is_backward { -value } else { value }
+    }
+
+    /// What v_d is multiplied by now.
+    pub(crate) fn effective(&self) -> T {
+        self.value().abs() * self.sign
+    }
+
+    /// Changes what is wished: 1 flies v_d, 0 stops, less goes back; at most [`MOST`] either way,
+    /// and nothing changes for a NaN.
+    pub(crate) fn wish(&mut self, factor: T) {
+        if !factor.is_finite() {
+            return;
+        }
+        let size = factor.abs().min(T::lit(MOST));
+        let turns = size > T::zero() && (factor < T::zero()) != self.is_backward;
+        (self.after, self.is_settled) = (turns.then_some(size), false);
+        self.change_to(if turns { T::zero() } else { size });
+    }
+
+    fn change_to(&mut self, wished: T) {
+        let change = self.wished - wished;
+        self.deviations = self.deviations.map(|deviation| deviation + change);
+        self.wished = wished;
+    }
+
+    /// The way turns when it stands: returns which way it is then. [`turned`](Self::turned) tells
+    /// how the path takes it.
+    fn turning(&mut self) -> Option<bool> {
+        let stands = self.deviations.iter().all(|deviation| deviation.abs() < T::lit(STOPPED));
+        let after = self.after.filter(|_| stands)?;
+        self.after = None;
+        self.is_backward = !self.is_backward;
+        self.change_to(after);
+        Some(self.is_backward)
+    }
+
+    /// After a turn: whether the path has a speed for that way itself.
+    pub(crate) fn turned(&mut self, has_own: bool) {
+        self.sign = if self.is_backward && !has_own { -T::one() } else { T::one() };
+    }
+
+    /// Begins at 0, for a payload at rest.
+    pub(crate) fn restart(&mut self) {
+        self.deviations = [-self.wished; LAGS];
+        self.is_settled = false;
+    }
+
+    /// `period` s on. Where the way turns in it, whether it is backward then, and
+    /// [`turned`](Self::turned) is to be told.
+    #[inline]
+    pub(crate) fn advance(&mut self, period: T) -> Option<bool> {
+        if self.is_settled { None } else { self.change(period) }
+    }
+
+    #[cold]
+    fn change(&mut self, period: T) -> Option<bool> {
+        self.deviations = Decay::over(period).of(&self.deviations);
+        if self.after.is_some() {
+            return self.turning();
+        }
+        if self.deviations.iter().all(|deviation| deviation.abs() < T::lit(SETTLED)) {
+            self.deviations = [T::zero(); LAGS];
+            self.is_settled = true;
+        }
+        None
+    }
+
+    /// Brings the factor of `horizon` s from now into the outputs.
+    #[inline(always)]
+    pub(crate) fn apply(&self, horizon: T, outputs: &mut Outputs<T>) {
+        if !self.is_settled || self.wished * self.sign != T::one() {
+            self.scale(horizon, outputs);
+        }
+    }
+
+    // Apart: flight at v_d does without it.
+    #[inline(never)]
+    fn scale(&self, horizon: T, outputs: &mut Outputs<T>) {
+        let missing = self.ahead(horizon) * -self.sign + T::one();
+        outputs.speed_error += outputs.prescribed * missing;
+    }
+
+    /// r(t) about `horizon` s from now.
+    fn ahead(&self, horizon: T) -> Series<T, LAGS> {
+        // Each derivative of a deviation is a times what the lag before has more.
+        let mut deviations = Decay::over(horizon).of(&self.deviations);
+        let mut derivatives = [T::zero(); LAGS];
+        for order in 0..LAGS {
+            derivatives[order] = deviations[LAGS - 1];
+            for lag in (1..LAGS).rev() {
+                deviations[lag] = (deviations[lag - 1] - deviations[lag]) * T::lit(RATE);
+            }
+            deviations[0] = -deviations[0] * T::lit(RATE);
+        }
+        Series::from_derivatives(derivatives) + self.wished
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factor_has_five_continuous_derivatives_and_does_not_overshoot() {
+        let period = 0.002;
+        let mut factor = SpeedFactor::<f64>::none();
+        let mut last = factor.ahead(0.0);
+        for step in 0..20_000 {
+            // Wishes at odd moments, some in the middle of a change.
+            let wish = [(700, 0.0), (1500, 1.0), (2100, 0.5), (9000, 1.3), (9001, 0.2)];
+            if let Some((_, wish)) = wish.into_iter().find(|(at, _)| *at == step) {
+                factor.wish(wish);
+            }
+            // What is wished reaches the sixth derivative alone: the present series continues the
+            // last one.
+            let (now, expected) = (factor.ahead(0.0), last.shift(period));
+            for k in 0..LAGS {
+                // The sixth derivative is at most a⁶ (1 + 1)⁶ = 4096 per unit of change: what it
+                // adds within a period.
+                let bound = 2.0 * 4096.0 * period.powi(6 - k as i32) + SETTLED * 64.0;
+                let error = (now.derivative(k) - expected.derivative(k)).abs();
+                assert!(error <= bound, "step {step}, order {k}: {error:e}");
+            }
+            assert!(factor.value() <= 1.3 + 1e-12 && factor.value() >= -1e-12, "step {step}");
+            assert_eq!(factor.advance(period), None);
+            last = now;
+        }
+        assert_eq!(factor.value(), 0.2);
+    }
+
+    #[test]
+    fn the_way_turns_when_it_stands() {
+        let mut factor = SpeedFactor::<f64>::none();
+        factor.wish(-0.5);
+        let mut turns = 0;
+        for _ in 0..20_000 {
+            let before = factor.value();
+            if let Some(is_backward) = factor.advance(0.002) {
+                assert!(is_backward && before.abs() < 0.01, "{before}");
+                factor.turned(false);
+                turns += 1;
+            }
+        }
+        assert_eq!((turns, factor.value(), factor.sign), (1, -0.5, -1.0));
+    }
+
+    #[test]
+    fn factor_changes_as_fast_as_stated() {
+        let mut factor = SpeedFactor::<f64>::none();
+        factor.wish(0.0);
+        let mut fastest = 0.0_f64;
+        for _ in 0..3000 {
+            fastest = fastest.max(factor.ahead(0.0).derivative(1).abs());
+            factor.advance(0.002);
+        }
+        // a 5⁵ e⁻⁵/5!.
+        assert!((fastest - 0.351).abs() < 1e-3, "{fastest}");
+        assert!(factor.value() < 0.05, "{}", factor.value());
+    }
+}

@@ -1,0 +1,5 @@
+//! Routes: the law against the witness, and flights.
+
+mod courses;
+mod flight;
+mod law;
