@@ -115,6 +115,9 @@ fn the_table_does_not_depend_on_threads_shards_or_interruptions() {
     };
     let missing = merge(&["part3", "part1"]);
     assert!(!missing.status.success(), "a shard was missing");
+    assert!(String::from_utf8_lossy(&missing.stderr).contains("shard 2/3 is missing"), "{missing:?}");
+    let twice = merge(&["part3", "part1", "part3", "part2"]);
+    assert!(String::from_utf8_lossy(&twice.stderr).contains("shard 3/3 again"), "{twice:?}");
     let merged = merge(&["part3", "part1", "part2"]);
     assert!(merged.status.success(), "{}", String::from_utf8_lossy(&merged.stderr));
     assert!(table(&folder, "merged") == whole, "merged");

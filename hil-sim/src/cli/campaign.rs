@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use hil_sim::fly::flight::Control;
 use hil_sim::report::log;
-use hil_sim::study::campaign::{self, Campaign, Identity, Row, Shard};
+use hil_sim::study::campaign::{self, Campaign, Identity, Replay, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -19,7 +19,9 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim campaign my.toml --out results         again: goes on where it was interrupted
   hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
   hil-sim campaign my.toml --table csv,parquet --out results
-  hil-sim campaign my.toml --shard 1/4 --out part1    a quarter, for a cluster; see `hil-sim merge`";
+  hil-sim campaign my.toml --shard 1/4 --out part1    a quarter, for a cluster; see `hil-sim merge`
+  hil-sim campaign my.toml --shard $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT --out part$SLURM_ARRAY_TASK_ID
+  parallel hil-sim campaign my.toml --jobs 1 --shard {}/8 --out part{} ::: {1..8}";
 
 /// Each example can be pasted into a shell.
 pub const MERGE_EXAMPLES: &str = "Examples:
@@ -162,13 +164,16 @@ fn report(
 fn replay(common: &Common, campaign: &Campaign, seed: Seed, logs: &Logs) -> Ended {
     let stop = many::interrupt()?;
     let control = Control { stop: &stop, progress: &|_| {} };
-    let Some((row, table)) = campaign::replay(campaign, seed, control)? else { return Ok(many::nothing_reported()) };
+    let Some(replay) = campaign::replay(campaign, seed, control)? else { return Ok(many::nothing_reported()) };
+    let Replay { row, log: table, page } = replay;
     let folder = common.folder();
     std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     log::write(folder, &table, &logs.log)?;
+    let path = folder.join(format!("{}.html", table.name));
+    std::fs::write(&path, page).map_err(|error| format!("{}: {error}", path.display()))?;
     if !common.quiet {
         let mut out = io::stdout().lock();
-        writeln!(out, "{row:#?}\nLogs: {}.*", folder.join(&table.name).display())?;
+        writeln!(out, "{row:#?}\nPage and logs: {}.*", folder.join(&table.name).display())?;
     }
     Ok(ExitCode::SUCCESS)
 }

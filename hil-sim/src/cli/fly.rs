@@ -28,7 +28,7 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic, un
     if !common.quiet {
         let slowest = outcomes.iter().map(|outcome| outcome.flight.times_real_time).fold(f64::INFINITY, f64::min);
         let mut out = io::stdout().lock();
-        writeln!(out, "{}", report::table(&outcomes, &reference))?;
+        writeln!(out, "{}", report::table(&outcomes, &reference, many::width()))?;
         if slowest.is_finite() {
             writeln!(out, "One core flies the f32 law at {slowest:.0} times real time or more.")?;
         }

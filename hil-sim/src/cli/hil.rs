@@ -38,7 +38,7 @@ pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
     fs::write(common.folder().join("hil.json"), serde_json::to_vec_pretty(&links)?)?;
     if !common.quiet {
         let mut out = io::stdout().lock();
-        writeln!(out, "{}\n{}", report::table(&outcomes, &reference), hil::table(&links))?;
+        writeln!(out, "{}\n{}", report::table(&outcomes, &reference, many::width()), hil::table(&links))?;
         writeln!(out, "Report: {}", page.display())?;
     }
     match failure {

@@ -64,3 +64,8 @@ pub fn bar(quiet: bool, length: u64, template: &str) -> ProgressBar {
 pub fn progress(bar: &ProgressBar) -> impl Fn(f64) + Sync + '_ {
     |flown_s| bar.inc((1e3 * flown_s).round() as u64)
 }
+
+/// Columns of the terminal on standard output; none where that is no terminal.
+pub fn width() -> Option<usize> {
+    console::Term::stdout().size_checked().map(|(_, columns)| columns.into())
+}

@@ -11,6 +11,7 @@ mod load;
 mod many;
 mod policies;
 mod tune;
+mod view;
 
 use clap::{Parser, Subcommand};
 use hil_sim::describe::scenario::{CURVES, FIGURES};
@@ -172,6 +173,13 @@ enum Command {
         #[command(flatten)]
         logs: Logs,
     },
+    /// Open a report in the browser.
+    #[command(after_help = view::EXAMPLES)]
+    View {
+        /// A report's page, or its folder.
+        #[arg(value_name = "FILE", default_value = "out")]
+        file: PathBuf,
+    },
     /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to connect to.
     #[command(after_help = hil::TARGET_EXAMPLES)]
     Target {
@@ -200,6 +208,7 @@ pub fn run() -> Ended {
         Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
+        Some(Command::View { file }) => view::view(&file),
         Some(Command::Target { listen }) => hil::target(&common, &listen),
     }
 }

@@ -1,8 +1,9 @@
-//! The figures, drawn from the logs: the paper's from runs that say which panel they are, a sheet for any other run.
+//! The figures, drawn from the logs: the paper's from runs that say which panel they are, a sheet
+//! for any other run.
 
 use plotters::prelude::*;
 
-use super::plot::{Area, COLOURS, Curve, Drawn, Track, elevation, plan, space, time, time_log};
+use super::plot::{Area, COLOURS, Curve, Drawn, FINE, Track, drawing, elevation, plan, space, time, time_log};
 use super::{Figure, ReportError};
 use crate::fly::batch::Outcome;
 use crate::fly::sample::Sample;
@@ -19,26 +20,22 @@ struct Plan<'a> {
     runs: Vec<&'a Outcome>,
     size: (u32, u32),
     panels: fn(&Area<'_>, &[&Outcome]) -> Drawn,
+    is_of_the_paper: bool,
 }
 
-/// What the names of curves' figures begin with.
-pub const CURVE: &str = "curve-";
-
-/// Whether a flight belongs to a family of curves, a figure with a name, rather than to a numbered figure or to none.
+/// Whether a flight belongs to a family of curves, a figure with a name, rather than to a numbered
+/// figure or to none.
 pub fn is_curve(outcome: &Outcome) -> bool {
     outcome.scenario.figure.as_deref().is_some_and(|figure| !figure.starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// Draws every figure that these flights belong to.
 pub fn draw(outcomes: &[Outcome]) -> Result<Vec<Figure>, ReportError> {
-    plans(outcomes)
-        .into_iter()
-        .map(|plan| {
-            let error = |message| ReportError::Figure { name: plan.name.clone(), message };
-            let svg = render(&plan).map_err(|e| error(e.to_string()))?;
-            Ok(Figure { name: plan.name, caption: plan.caption, svg })
-        })
-        .collect()
+    let drawn = plans(outcomes).into_iter().map(|Plan { name, caption, runs, size, panels, is_of_the_paper }| {
+        let svg = drawing(&name, &caption, size, |area| panels(area, &runs))?;
+        Ok(Figure { name, caption, svg, is_of_the_paper })
+    });
+    drawn.collect()
 }
 
 fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
@@ -59,6 +56,7 @@ fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
         runs,
         size,
         panels,
+        is_of_the_paper: true,
     };
     let mut plans = vec![
         figure(
@@ -110,11 +108,12 @@ fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
     plans.extend(curves.into_iter().map(|curve| {
         let runs = of(curve);
         Plan {
-            name: format!("{CURVE}{curve}"),
+            name: format!("curve-{curve}"),
             caption: format!("{curve}. {}", runs.first().map_or("", |run| &run.scenario.title)),
             runs,
             size: (1000, 1240),
             panels: curve_sheet,
+            is_of_the_paper: false,
         }
     }));
     plans.extend(outcomes.iter().filter(|outcome| outcome.scenario.figure.is_none()).map(|outcome| Plan {
@@ -123,24 +122,13 @@ fn plans(outcomes: &[Outcome]) -> Vec<Plan<'_>> {
         runs: vec![outcome],
         size: (1000, 1160),
         panels: sheet,
+        is_of_the_paper: false,
     }));
     plans
 }
 
-fn render(plan: &Plan<'_>) -> Result<String, Box<dyn std::error::Error>> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, plan.size).into_drawing_area();
-        area.fill(&WHITE)?;
-        (plan.panels)(&area, &plan.runs)?;
-        area.present()?;
-    }
-    // Curves of many short lines: without this every joint of two pixels would show as a spike.
-    Ok(svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1))
-}
-
 fn obstacle(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
-    let (above, below) = area.split_vertically(500);
+    let (above, below) = area.split_vertically(500 * FINE);
     for (part, run) in above.split_evenly((1, runs.len())).iter().zip(runs) {
         plan(part, &panel_title(run), &circle(run), &tracks(&[run], runs))?;
     }
@@ -165,7 +153,7 @@ fn inputs(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
 }
 
 fn wrong_mass(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
-    let (above, below) = area.split_vertically(460);
+    let (above, below) = area.split_vertically(460 * FINE);
     let halves = above.split_evenly((1, 2));
     space(&halves[0], "In space", &circle(runs[0]), &tracks(runs, runs))?;
     plan(&halves[1], "From above", &circle(runs[0]), &tracks(runs, runs))?;
@@ -176,7 +164,7 @@ fn wrong_mass(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
 }
 
 fn sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
-    let (above, below) = area.split_vertically(460);
+    let (above, below) = area.split_vertically(460 * FINE);
     let halves = above.split_evenly((1, 2));
     space(&halves[0], "In space", &circle(runs[0]), &tracks(runs, runs))?;
     plan(&halves[1], "From above", &circle(runs[0]), &tracks(runs, runs))?;
@@ -188,7 +176,7 @@ fn sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
 }
 
 fn curve_sheet(area: &Area<'_>, runs: &[&Outcome]) -> Drawn {
-    let (above, below) = area.split_vertically(460);
+    let (above, below) = area.split_vertically(460 * FINE);
     let halves = above.split_evenly((1, 2));
     plan(&halves[0], "From above", &circle(runs[0]), &tracks(runs, runs))?;
     elevation(&halves[1], "From the side", &circle(runs[0]), &tracks(runs, runs))?;

@@ -1,13 +1,12 @@
 //! What is left of flights: a table, CSV files, figures, one HTML page, and a summary for programs.
 
 mod figures;
-mod html;
 pub mod log;
+pub(crate) mod page;
 pub(crate) mod plot;
 mod summary;
 mod table;
 
-pub(crate) use html::STYLE;
 pub use table::table;
 
 use std::io;
@@ -15,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 use crate::describe::reference::Reference;
 use crate::fly::batch::Outcome;
-use html::Page;
+use page::Page;
 
 /// A drawn figure.
 pub struct Figure {
@@ -25,6 +24,8 @@ pub struct Figure {
     pub caption: String,
     /// The drawing.
     pub svg: String,
+    /// One of the paper's, which its page shows; the flights of the others are there to be played.
+    pub is_of_the_paper: bool,
 }
 
 /// A report that could not be made.
@@ -56,7 +57,8 @@ pub enum ReportError {
     },
 }
 
-/// Writes all files of a report into `folder`, logs in these formats, each complete or not at all, and returns the page's path.
+/// Writes all files of a report into `folder`, logs in these formats, each complete or not at all,
+/// and returns the page's path.
 ///
 /// # Errors
 /// [`ReportError`] names the file or figure.
@@ -67,37 +69,39 @@ pub fn write(
     formats: &[log::Format],
 ) -> Result<PathBuf, ReportError> {
     std::fs::create_dir_all(folder).map_err(|error| ReportError::File { path: folder.to_owned(), error })?;
+    let mut flights = Vec::with_capacity(outcomes.len());
     for outcome in outcomes {
         let scenario = &outcome.scenario;
         let table = log::Table::new(&scenario.name, &scenario.title, &log::Record::of_flight(outcome));
         log::write(folder, &table, formats)?;
+        flights.push((outcome, table));
     }
     let figures = figures::draw(outcomes)?;
     for figure in &figures {
         write_file(&folder.join(format!("{}.svg", figure.name)), figure.svg.as_bytes())?;
     }
     write_file(&folder.join("summary.json"), summary::json(outcomes, reference).as_bytes())?;
-    let (curves, others): (Vec<&Outcome>, Vec<&Outcome>) =
-        outcomes.iter().partition(|outcome| figures::is_curve(outcome));
-    let (curve_figures, other_figures): (Vec<&Figure>, Vec<&Figure>) =
-        figures.iter().partition(|figure| figure.name.starts_with(figures::CURVE));
+    let shown = flights.iter().map(|(outcome, table)| (*outcome, table));
+    let (curves, others): (Vec<_>, Vec<_>) = shown.partition(|(outcome, _)| figures::is_curve(outcome));
+    let figures = figures.iter().filter(|figure| figure.is_of_the_paper).collect();
     let title = "Path following with a slung load";
     let curve_title = "Curves of every kind";
     let page = folder.join("report.html");
-    let mut report = Page { heading: title, outcomes: others, figures: other_figures, link: None };
-    if report.outcomes.is_empty() {
-        report = Page { heading: curve_title, outcomes: curves, figures: curve_figures, link: None };
+    let mut report = Page { heading: title, flights: others, figures, link: None };
+    if report.flights.is_empty() {
+        report = Page { heading: curve_title, flights: curves, figures: Vec::new(), link: None };
     } else if !curves.is_empty() {
         let link = Some(("report.html", title));
-        let second = Page { heading: curve_title, outcomes: curves, figures: curve_figures, link };
-        write_file(&folder.join("curves.html"), html::page(&second, reference).as_bytes())?;
+        let second = Page { heading: curve_title, flights: curves, figures: Vec::new(), link };
+        write_file(&folder.join("curves.html"), page::page(&second, reference).as_bytes())?;
         report.link = Some(("curves.html", curve_title));
     }
-    write_file(&page, html::page(&report, reference).as_bytes())?;
+    write_file(&page, page::page(&report, reference).as_bytes())?;
     Ok(page)
 }
 
-/// Writes beside the file first and then renames, so that whatever happens no half-written file has its name.
+/// Writes beside the file first and then renames, so that whatever happens no half-written file has
+/// its name.
 ///
 /// # Errors
 /// [`ReportError`] names the file.

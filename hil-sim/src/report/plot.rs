@@ -4,6 +4,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use std::ops::Range;
 
+use super::ReportError;
+
 /// A part of a figure to draw on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Result of drawing.
@@ -14,6 +16,45 @@ pub const COLOURS: [RGBColor; 4] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
 const GREY: RGBColor = RGBColor(120, 120, 120);
 const FONT: &str = "sans-serif";
+
+/// A figure as SVG, in the colours of the page around it, or black on white alone; `title` is for
+/// those who do not see it.
+///
+/// # Errors
+/// [`ReportError::Figure`] with the figure's `name`.
+pub fn drawing(
+    name: &str,
+    title: &str,
+    size: (u32, u32),
+    panels: impl FnOnce(&Area<'_>) -> Drawn,
+) -> Result<String, ReportError> {
+    let fine = (size.0 * FINE, size.1 * FINE);
+    let mut svg = String::new();
+    let drawn = (|| {
+        let area = SVGBackend::with_string(&mut svg, fine).into_drawing_area();
+        area.fill(&WHITE)?;
+        panels(&area)?;
+        Ok(area.present()?)
+    })();
+    drawn.map_err(|error: Box<dyn std::error::Error>| ReportError::Figure {
+        name: name.to_owned(),
+        message: error.to_string(),
+    })?;
+    let label = title.replace('&', "&amp;").replace('"', "&quot;").replace('<', "&lt;");
+    let sized = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
+    // Curves of many short lines: without round joints every joint of two pixels would show as a
+    // spike.
+    Ok(svg
+        .replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{label}\" stroke-linejoin=\"round\" "), 1)
+        .replacen(&sized(fine), &sized(size), 1)
+        .replace("\"#000000\"", "\"currentColor\"")
+        .replace("fill=\"#FFFFFF\"", "class=\"paper\" fill=\"#FFFFFF\"")
+        .replace("stroke=\"#FFFFFF\"", "class=\"paper-line\" stroke=\"#FFFFFF\""))
+}
+
+/// Units of a drawing in a pixel of its figure: the backend knows whole units only, and curves of
+/// whole pixels are jagged.
+pub const FINE: u32 = 10;
 
 /// A payload's way through space.
 pub struct Track {
@@ -65,7 +106,7 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
     // The chart's own vertical points up: it is −p3.
     let up = -axes[2].end..-axes[2].start;
 
-    let mut chart = ChartBuilder::on(area).caption(title, (FONT, 17)).margin(8).build_cartesian_3d(
+    let mut chart = ChartBuilder::on(area).caption(title, (FONT, 17 * FINE)).margin(8 * FINE).build_cartesian_3d(
         p1.clone(),
         up.clone(),
         p2.clone(),
@@ -84,7 +125,7 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
         .x_formatter(&|value| format!("{value:.0}"))
         .y_formatter(&|up| format!("{:.0}", -up))
         .z_formatter(&|value| format!("{value:.0}"))
-        .label_style((FONT, 12))
+        .label_style((FONT, 12 * FINE))
         .draw()?;
     let at = |p: &[f64; 3]| (p[0], -p[2], p[1]);
     let middle = |range: &Range<f64>| 0.5 * (range.start + range.end);
@@ -94,20 +135,24 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
         ("p2, m", (p1.end + 1.6 * beyond, up.start, middle(&p2))),
         ("p3, m", (p1.start - 0.6 * beyond, up.end + 0.07 * (up.end - up.start), p2.end)),
     ];
-    chart.draw_series(names.map(|(name, place)| Text::new(name, place, (FONT, 13).into_font())))?;
-    chart.draw_series(LineSeries::new(curve.iter().map(at), GREY.stroke_width(1)))?;
+    chart.draw_series(names.map(|(name, place)| Text::new(name, place, (FONT, 13 * FINE).into_font())))?;
+    chart.draw_series(LineSeries::new(curve.iter().map(at), GREY.stroke_width(FINE)))?;
     for track in tracks {
         let colour = track.colour;
         chart
-            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2)))?
+            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2 * FINE)))?
             .label(&track.label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4, colour.filled())))?;
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
+            });
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, colour.filled())))?;
     }
     chart
         .configure_series_labels()
+        .margin(5 * FINE)
+        .legend_area_size(30 * FINE)
         .position(SeriesLabelPosition::UpperRight)
-        .label_font((FONT, 13))
+        .label_font((FONT, 13 * FINE))
         .background_style(WHITE.mix(0.8))
         .draw()?;
     Ok(())
@@ -136,40 +181,45 @@ fn projection(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]
     let axes = [range(all().map(|p| sense * p[up]), 1.0), range(all().map(|p| p[right]), 1.0)];
     // Equal scales on both axes.
     let (width, height) = area.dim_in_pixel();
-    let (width, height) = (f64::from(width) - 80.0, f64::from(height) - 90.0);
+    let (width, height) = (f64::from(width) - f64::from(80 * FINE), f64::from(height) - f64::from(90 * FINE));
     let scale = ((axes[1].end - axes[1].start) / width).max((axes[0].end - axes[0].start) / height);
 
     let mut chart = ChartBuilder::on(area)
-        .caption(title, (FONT, 17))
-        .margin(10)
-        .x_label_area_size(38)
-        .y_label_area_size(48)
+        .caption(title, (FONT, 17 * FINE))
+        .margin(10 * FINE)
+        .x_label_area_size(38 * FINE)
+        .y_label_area_size(48 * FINE)
         .build_cartesian_2d(widened(&axes[1], scale * width), widened(&axes[0], scale * height))?;
     chart
         .configure_mesh()
+        .set_all_tick_mark_size(5 * FINE)
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_label_formatter(&|p| p.to_string())
         .y_label_formatter(&|p| (sense * p + 0.0).to_string())
         .x_desc(format!("p{}, m", right + 1))
         .y_desc(format!("p{}, m", up + 1))
-        .label_style((FONT, 13))
-        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 13 * FINE))
+        .axis_desc_style((FONT, 14 * FINE))
         .draw()?;
     let at = |p: &[f64; 3]| (p[right], sense * p[up]);
-    chart.draw_series(DashedLineSeries::new(curve.iter().map(at), 6, 4, GREY.stroke_width(1)))?;
+    chart.draw_series(DashedLineSeries::new(curve.iter().map(at), 6 * FINE, 4 * FINE, GREY.stroke_width(FINE)))?;
     for track in tracks {
         let colour = track.colour;
         chart
-            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2)))?
+            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2 * FINE)))?
             .label(&track.label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
-        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4, colour.filled())))?;
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
+            });
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, colour.filled())))?;
     }
     Ok(chart
         .configure_series_labels()
+        .margin(5 * FINE)
+        .legend_area_size(30 * FINE)
         .position(SeriesLabelPosition::MiddleMiddle)
-        .label_font((FONT, 13))
+        .label_font((FONT, 13 * FINE))
         .background_style(WHITE.mix(0.8))
         .draw()?)
 }
@@ -183,29 +233,39 @@ pub fn time(area: &Area<'_>, quantity: &str, curves: &[Curve], marks_s: &[f64]) 
     let mut chart = builder.build_cartesian_2d(time_range(curves), y.clone())?;
     chart
         .configure_mesh()
+        .set_all_tick_mark_size(5 * FINE)
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc("t, s")
         .x_label_formatter(&|t| t.to_string())
         .y_desc(quantity)
         .y_labels(6)
-        .label_style((FONT, 13))
-        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 13 * FINE))
+        .axis_desc_style((FONT, 14 * FINE))
         .draw()?;
     for &mark in marks_s {
-        chart.draw_series(DashedLineSeries::new([(mark, y.start), (mark, y.end)], 3, 4, GREY.stroke_width(1)))?;
+        chart.draw_series(DashedLineSeries::new(
+            [(mark, y.start), (mark, y.end)],
+            3 * FINE,
+            4 * FINE,
+            GREY.stroke_width(FINE),
+        ))?;
     }
     for curve in curves {
         let colour = curve.colour;
         chart
-            .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2)))?
+            .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2 * FINE)))?
             .label(&curve.label)
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+            .legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
+            });
     }
     Ok(chart
         .configure_series_labels()
+        .margin(5 * FINE)
+        .legend_area_size(30 * FINE)
         .position(SeriesLabelPosition::UpperRight)
-        .label_font((FONT, 13))
+        .label_font((FONT, 13 * FINE))
         .background_style(WHITE.mix(0.8))
         .draw()?)
 }
@@ -217,39 +277,47 @@ pub fn time_log(area: &Area<'_>, quantity: &str, floor: f64, curves: &[Curve], m
     let mut chart = builder.build_cartesian_2d(time_range(curves), (floor..top).log_scale())?;
     chart
         .configure_mesh()
+        .set_all_tick_mark_size(5 * FINE)
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc("t, s")
         .x_label_formatter(&|t| t.to_string())
         .y_desc(quantity)
         .y_label_formatter(&|value| format!("{value:.0e}"))
-        .label_style((FONT, 13))
-        .axis_desc_style((FONT, 14))
+        .label_style((FONT, 13 * FINE))
+        .axis_desc_style((FONT, 14 * FINE))
         .draw()?;
     for &mark in marks_s {
-        chart.draw_series(DashedLineSeries::new([(mark, floor), (mark, top)], 3, 4, GREY.stroke_width(1)))?;
+        chart.draw_series(DashedLineSeries::new(
+            [(mark, floor), (mark, top)],
+            3 * FINE,
+            4 * FINE,
+            GREY.stroke_width(FINE),
+        ))?;
     }
     for curve in curves {
         let colour = curve.colour;
         let points = curve.points.iter().map(|&(t, value)| (t, value.max(floor)));
-        let drawn = chart.draw_series(LineSeries::new(points, colour.stroke_width(2)))?;
+        let drawn = chart.draw_series(LineSeries::new(points, colour.stroke_width(2 * FINE)))?;
         if !curve.label.is_empty() {
-            drawn
-                .label(&curve.label)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], colour.stroke_width(2)));
+            drawn.label(&curve.label).legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
+            });
         }
     }
     Ok(chart
         .configure_series_labels()
+        .margin(5 * FINE)
+        .legend_area_size(30 * FINE)
         .position(SeriesLabelPosition::UpperRight)
-        .label_font((FONT, 13))
+        .label_font((FONT, 13 * FINE))
         .background_style(WHITE.mix(0.8))
         .draw()?)
 }
 
 fn time_axes<'a, 'b>(area: &'a Area<'b>) -> ChartBuilder<'a, 'b, SVGBackend<'b>> {
     let mut builder = ChartBuilder::on(area);
-    builder.margin(10).x_label_area_size(38).y_label_area_size(66);
+    builder.margin(10 * FINE).x_label_area_size(38 * FINE).y_label_area_size(66 * FINE);
     builder
 }
 

@@ -51,38 +51,106 @@ pub const COLUMNS: &[Column] = &[
     Column { heading: "steady\nspeed, m/s", value: |r| r.steady_speed_error_m_s, format: signed4 },
 ];
 
-/// The table of these flights for a terminal.
-#[must_use]
-pub fn table(outcomes: &[Outcome], reference: &Reference) -> String {
-    let mut table = Table::new();
-    table.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
-    let fixed = ["run", "law"];
-    let last = ["f32 - f64,\nrelative", "times\nreal time"];
-    let headings = COLUMNS.iter().map(|column| column.heading);
-    table.set_header(fixed.into_iter().chain(headings).chain(last));
-    for outcome in outcomes {
-        let flight = &outcome.flight;
-        let expected = reference.runs.get(&outcome.scenario.name).copied().unwrap_or_default();
-        let mut row = vec![name(outcome), format!("{}\nreference", outcome.scenario.controller.law.name())];
-        row.extend(COLUMNS.iter().map(|column| {
-            let text = |results| column.text(results).unwrap_or_default();
-            format!("{}\n{}", text(&flight.results), text(&expected))
-        }));
-        row.push(flight.deviation.map(|deviation| format!("{:.1e}", deviation.max())).unwrap_or_default());
-        row.push(format!("{:.0}", flight.times_real_time));
-        table.add_row(row);
-    }
-    for column in table.column_iter_mut().skip(2) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table.trim_fmt()
+/// The columns that one of these flights, or its reference, has a number for.
+pub fn filled(outcomes: &[&Outcome], reference: &Reference) -> Vec<&'static Column> {
+    let has = |column: &Column, outcome: &Outcome| {
+        let expected = reference.runs.get(&outcome.scenario.name);
+        (column.value)(&outcome.flight.results).is_some()
+            || expected.is_some_and(|expected| (column.value)(expected).is_some())
+    };
+    COLUMNS.iter().filter(|column| outcomes.iter().any(|outcome| has(column, outcome))).collect()
 }
 
-/// The scenario's name, with how the flight ended if not at its end.
-fn name(outcome: &Outcome) -> String {
-    let name = &outcome.scenario.name;
-    match outcome.flight.end.failure() {
-        None => name.clone(),
-        Some(failure) => format!("{name}\n{failure}"),
+/// The table of these flights for a terminal of so many columns: where it would be wider, its
+/// columns go on in a table below.
+#[must_use]
+pub fn table(outcomes: &[Outcome], reference: &Reference, width: Option<usize>) -> String {
+    let outcomes: Vec<&Outcome> = outcomes.iter().collect();
+    let expected = |outcome: &Outcome| reference.runs.get(&outcome.scenario.name).copied().unwrap_or_default();
+    let names: Vec<String> = outcomes
+        .iter()
+        .map(|outcome| {
+            let (name, end) = name_and_end(outcome);
+            format!("{name}\n{}", end.unwrap_or_else(|| "reference".to_owned()))
+        })
+        .collect();
+    let law = outcomes.iter().map(|outcome| outcome.scenario.controller.law.name().to_owned()).collect();
+    let mut columns = vec![("law", law)];
+    columns.extend(filled(&outcomes, reference).into_iter().map(|column| {
+        let text = |results: &Results| column.text(results).unwrap_or_default();
+        let cells =
+            outcomes.iter().map(|outcome| format!("{}\n{}", text(&outcome.flight.results), text(&expected(outcome))));
+        (column.heading, cells.collect())
+    }));
+    let deviation = |outcome: &&Outcome| outcome.flight.deviation.map(|deviation| format!("{:.1e}", deviation.max()));
+    columns.push((
+        "f32 - f64,\nrelative",
+        outcomes.iter().map(|outcome| deviation(outcome).unwrap_or_default()).collect(),
+    ));
+    let speed = outcomes.iter().map(|outcome| format!("{:.0}", outcome.flight.times_real_time));
+    columns.push(("times\nreal time", speed.collect()));
+    folded(("flight", &names), &columns, width.unwrap_or(usize::MAX))
+}
+
+/// Tables below each other, none wider than `width`, each with the first column and as many of the
+/// others as fit.
+fn folded((heading, names): (&str, &[String]), columns: &[(&str, Vec<String>)], width: usize) -> String {
+    let mut text = String::new();
+    let mut left = columns;
+    while !left.is_empty() {
+        let first = needed(heading, names);
+        let fitting = left
+            .iter()
+            .scan(first, |sum, (heading, cells)| {
+                *sum = sum.saturating_add(needed(heading, cells));
+                Some(*sum)
+            })
+            .take_while(|&sum| sum <= width)
+            .count();
+        let (now, later) = left.split_at(fitting.max(1));
+        let mut table = Table::new();
+        table.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
+        table.set_header(std::iter::once(heading).chain(now.iter().map(|(heading, _)| *heading)));
+        for (row, name) in names.iter().enumerate() {
+            table.add_row(std::iter::once(name).chain(now.iter().map(|(_, cells)| &cells[row])));
+        }
+        for column in table.column_iter_mut().skip(1) {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+        text += &table.trim_fmt();
+        text.push('\n');
+        left = later;
+    }
+    text.pop();
+    text
+}
+
+/// Characters across that a column takes: its longest line between two spaces, and one to the next.
+fn needed(heading: &str, cells: &[String]) -> usize {
+    let lines = heading.lines().chain(cells.iter().flat_map(|cell| cell.lines()));
+    lines.map(|line| line.chars().count()).max().unwrap_or(0) + 3
+}
+
+/// The scenario's name, and how the flight ended if not at its duration.
+pub fn name_and_end(outcome: &Outcome) -> (&str, Option<String>) {
+    (&outcome.scenario.name, outcome.flight.end.failure())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_line_is_wider_than_the_terminal_and_no_number_is_broken() {
+        let names = vec!["a-flight\nreference".to_owned(), "another\nlost at 27.632 s".to_owned()];
+        let columns: Vec<(&str, Vec<String>)> =
+            (0..9).map(|k| ("heading,\nm", vec![format!("{k}.123456"), format!("-{k}00.5")])).collect();
+        for width in [40, 60, 80, 200] {
+            let text = folded(("flight", &names), &columns, width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{width}:\n{text}");
+            for k in 0..9 {
+                assert!(text.contains(&format!("{k}.123456")) && text.contains(&format!("-{k}00.5")), "{text}");
+            }
+        }
     }
 }

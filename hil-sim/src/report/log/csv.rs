@@ -1,4 +1,5 @@
-//! CSV with a sidecar: a table that every program reads, and beside it, in the form of the W3C's CSV on the Web, what its columns are.
+//! CSV with a sidecar: a table that every program reads, and beside it, in the form of the W3C's
+//! CSV on the Web, what its columns are.
 
 use serde_json::{Value, json};
 

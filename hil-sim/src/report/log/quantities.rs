@@ -1,4 +1,5 @@
-//! Every quantity of a log: its topic, its columns' names and units, what it is, and where it comes from.
+//! Every quantity of a log: its topic, its columns' names and units, what it is, and where it comes
+//! from.
 
 use super::record::Record;
 use crate::fly::fault::describe;

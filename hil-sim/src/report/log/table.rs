@@ -1,4 +1,5 @@
-//! A log as a table: time, and columns that know their names, units and meanings. Every format is written from it.
+//! A log as a table: time, and columns that know their names, units and meanings. Every format is
+//! written from it.
 
 use super::quantities::{QUANTITIES, WORDS};
 use super::record::Record;

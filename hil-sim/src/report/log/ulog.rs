@@ -1,12 +1,13 @@
-//! ULog, version 1: the published format of PX4's logs. Beside the table's own topics it has the UAV's under PX4's names, which is what
-//! Flight Review plots.
+//! ULog, version 1: the published format of PX4's logs. Beside the table's own topics it has the
+//! UAV's under PX4's names, which is what Flight Review plots.
 
 use super::table::{Column, Table, Values};
 
 /// The declaration of a field of PX4's, and the columns that make it.
 type Field = (&'static str, &'static [&'static str]);
 
-/// PX4's topics and fields that are columns of ours: both are NED, SI, and body axes forward-right-down.
+/// PX4's topics and fields that are columns of ours: both are NED, SI, and body axes
+/// forward-right-down.
 const PX4: [(&str, &[Field]); 3] = [
     (
         "vehicle_local_position",
@@ -147,7 +148,8 @@ impl Writer {
         Self(bytes)
     }
 
-    /// A message: its length, type and parts. Texts are cut where they would be longer than a message can be.
+    /// A message: its length, type and parts. Texts are cut where they would be longer than a
+    /// message can be.
     fn message(&mut self, kind: u8, parts: &[&[u8]]) {
         let body = parts.concat();
         let length = body.len().min(usize::from(u16::MAX));

@@ -10,6 +10,7 @@ mod fly;
 mod page;
 mod parquet;
 mod replay;
+mod statistics;
 mod store;
 mod summary;
 
@@ -18,7 +19,7 @@ pub use file::{ApproachFields, Campaign, Drawn};
 pub use fly::{Row, Supervised, Verdict, fly_run};
 pub use page::write;
 pub use parquet::encode as parquet;
-pub use replay::replay;
+pub use replay::{Replay, replay};
 pub use store::{Identity, Shard, Store, StoreError, merge};
 pub use summary::{Summary, summarize};
 

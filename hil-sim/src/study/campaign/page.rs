@@ -1,13 +1,14 @@
 //! A campaign's page: success over where flights started, d_C over time, margins.
 
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
 use super::fly::{INSTANTS, Row, Verdict};
 use super::summary::Summary;
-use crate::report::plot::{Area, COLOURS, Curve, Drawn, time_log};
-use crate::report::{ReportError, STYLE, write_file};
+use crate::report::page::{figure, head};
+use crate::report::plot::{Area, COLOURS, Curve, Drawn, FINE, drawing, time_log};
+use crate::report::{ReportError, write_file};
 use crate::study::compare::percentile;
 
 /// Writes `summary.json` and `campaign.html` into `folder` and returns the page's path.
@@ -30,57 +31,44 @@ pub fn write(
 }
 
 fn html(title: &str, duration_s: f64, summary: &Summary, rows: &[Row]) -> Result<String, ReportError> {
-    let figure = |name: &str, size, draw: &dyn Fn(&Area<'_>) -> Drawn| {
-        svg(size, draw).map_err(|error| ReportError::Figure { name: name.to_owned(), message: error.to_string() })
-    };
-    let success = figure("success", (1000, 330), &|area| {
+    let start = "Share of good flights over where they started; bars from 0 to 1, the number of flights above.";
+    let success = drawing("success", start, (1000, 330), |area| {
         let parts = area.split_evenly((1, 2));
         share(&parts[0], "distance at the start, m", rows, |row| row.start_distance_m)?;
         share(&parts[1], "speed at the start, m/s", rows, |row| row.start_speed)
     })?;
-    let success_2 = figure("success over the vehicle's and the world's", (1000, 330), &|area| {
+    let drawn = "The same over payload and wind.";
+    let success_2 = drawing("success-drawn", drawn, (1000, 330), |area| {
         let parts = area.split_evenly((1, 2));
         share(&parts[0], "payload, kg", rows, |row| row.payload_mass)?;
         share(&parts[1], "mean wind, m/s", rows, |row| row.wind)
     })?;
-    let over_time = figure("d_C over time", (1000, 380), &|area| {
+    let percentile = "Percentiles of the distance from the path over the flights; one that ended early counts 100 m.";
+    let over_time = drawing("distance", percentile, (1000, 380), |area| {
         time_log(area, "d_C, m", 1e-4, &percentiles(duration_s, rows), &[])
     })?;
-    let margins = figure("margins", (1000, 330), &|area| {
+    let least = "Least margins of each flight: flights by how near they came to a singularity, which is at zero.";
+    let margins = drawing("margins", least, (1000, 330), |area| {
         let parts = area.split_evenly((1, 3));
         histogram(&parts[0], "least q·e3", rows, |row| row.least_q3)?;
         histogram(&parts[1], "least q·b3", rows, |row| row.least_q_b3)?;
         histogram(&parts[2], "least tension, N", rows, |row| row.least_tension)
     })?;
+    let heading = if title.is_empty() { "Campaign" } else { title };
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Campaign: " (title) }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head(heading))
             body {
-                h1 { (title) }
-                pre { (summary.text(rows)) }
-                (shown(&success, "Share of good flights over where they started; bars from 0 to 1, the number of flights above."))
-                (shown(&success_2, "The same over payload and wind."))
-                (shown(&over_time, "Percentiles of the distance from the path over the flights; one that ended early counts 100 m."))
-                (shown(&margins, "Least margins of each flight: flights by how near they came to a singularity, which is at zero."))
-                h2 { "Flights that failed" }
-                div.wide {
-                    table {
-                        thead { tr { th { "flight" } th { "verdict" } th { "mode" } th { "first fault" } th { "last fault" } th { "largest d_C, m" } } }
-                        tbody {
-                            @for failure in &summary.failures {
-                                tr {
-                                    td { (failure.run) } td { (format!("{:?}", failure.verdict)) } td { (failure.mode) }
-                                    td { (failure.faults[0]) } td { (failure.faults[1]) } td { (format!("{:.3}", failure.dc_max_m)) }
-                                }
-                            }
-                        }
-                    }
+                main {
+                    h1 { (heading) }
+                    pre tabindex="0" { (summary.text(rows)) }
+                    (figure("success", &success, start))
+                    (figure("success-drawn", &success_2, drawn))
+                    (figure("distance", &over_time, percentile))
+                    (figure("margins", &margins, least))
+                    h2 { "Flights that failed" }
+                    @if summary.failures.is_empty() { p { "None of " (summary.runs) "." } } @else { (failures(summary)) }
                 }
             }
         }
@@ -88,19 +76,31 @@ fn html(title: &str, duration_s: f64, summary: &Summary, rows: &[Row]) -> Result
     .into_string())
 }
 
-fn shown(svg: &str, caption: &str) -> maud::Markup {
-    html! { figure { (PreEscaped(svg)) figcaption { (caption) } } }
-}
-
-fn svg(size: (u32, u32), draw: &dyn Fn(&Area<'_>) -> Drawn) -> Result<String, Box<dyn std::error::Error>> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        area.fill(&WHITE)?;
-        draw(&area)?;
-        area.present()?;
+fn failures(summary: &Summary) -> Markup {
+    html! {
+        div.wide role="region" aria-label="Flights that failed" tabindex="0" {
+            table.results {
+                caption { "Each can be flown again: " code { "hil-sim campaign … --replay FLIGHT" } }
+                thead {
+                    tr {
+                        th scope="col" { "flight" }
+                        @for name in ["verdict", "mode", "first fault", "last fault"] { th.words scope="col" { (name) } }
+                        th scope="col" { "largest d_C, m" }
+                    }
+                }
+                tbody {
+                    @for failure in &summary.failures {
+                        tr {
+                            th scope="row" { (failure.run) }
+                            td.words { (format!("{:?}", failure.verdict)) } td.words { (failure.mode) }
+                            td.words { (failure.faults[0]) } td.words { (failure.faults[1]) }
+                            td { (format!("{:.3}", failure.dc_max_m)) }
+                        }
+                    }
+                }
+            }
+        }
     }
-    Ok(svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1))
 }
 
 /// d_C's percentiles at the instants that rows have.
@@ -164,24 +164,25 @@ fn histogram(area: &Area<'_>, quantity: &str, rows: &[Row], value: fn(&Row) -> f
 
 fn columns(area: &Area<'_>, x: &str, y: &str, low: f64, width: f64, top: f64, bars: &[(f64, usize)]) -> Drawn {
     let mut builder = ChartBuilder::on(area);
-    builder.margin(10).x_label_area_size(38).y_label_area_size(56);
+    builder.margin(10 * FINE).x_label_area_size(38 * FINE).y_label_area_size(56 * FINE);
     let mut chart = builder.build_cartesian_2d(low..low + width * bars.len() as f64, 0.0..top)?;
     chart
         .configure_mesh()
+        .set_all_tick_mark_size(5 * FINE)
         .disable_x_mesh()
         .light_line_style(WHITE)
         .bold_line_style(BLACK.mix(0.12))
         .x_desc(x)
         .y_desc(y)
-        .label_style(("sans-serif", 13))
-        .axis_desc_style(("sans-serif", 14))
+        .label_style(("sans-serif", 13 * FINE))
+        .axis_desc_style(("sans-serif", 14 * FINE))
         .draw()?;
     let at = |index: usize| low + width * index as f64;
     chart.draw_series(bars.iter().enumerate().filter(|(_, bar)| bar.1 > 0).map(|(index, &(height, _))| {
         Rectangle::new([(at(index) + 0.06 * width, 0.0), (at(index + 1) - 0.06 * width, height)], COLOURS[0].filled())
     }))?;
     chart.draw_series(bars.iter().enumerate().filter(|(_, bar)| bar.1 > 0).map(|(index, &(height, count))| {
-        Text::new(count.to_string(), (at(index) + 0.1 * width, height + 0.07 * top), ("sans-serif", 11))
+        Text::new(count.to_string(), (at(index) + 0.1 * width, height + 0.07 * top), ("sans-serif", 11 * FINE))
     }))?;
     Ok(())
 }

@@ -1,4 +1,5 @@
-//! The campaign's table as Parquet, for tools that read columns. Units and meanings of the columns stand in the file's metadata.
+//! The campaign's table as Parquet, for tools that read columns. Units and meanings of the columns
+//! stand in the file's metadata.
 
 use parquet::basic::Compression;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};

@@ -2,6 +2,7 @@
 //! number of threads or interruptions.
 
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -158,40 +159,48 @@ fn read_rows(path: &Path, identity: &Identity) -> Result<Vec<Row>, StoreError> {
 /// Puts the tables of all shards of one campaign together.
 ///
 /// # Errors
-/// [`StoreError`] if they are not the shards of one campaign, all there and complete, or a file
-/// cannot be read.
+/// [`StoreError`] if they are not the shards of one campaign, all there, once, and complete, or a
+/// file cannot be read. It names every folder that is not complete, and every shard that is
+/// missing.
 pub fn merge(folders: &[PathBuf]) -> Result<(Identity, Vec<Row>), StoreError> {
     let wrong = |folder: &Path, message: String| StoreError::Contents { path: folder.to_owned(), message };
+    let merged = |message: String| wrong(Path::new("merge"), message);
     let mut whole: Option<Identity> = None;
-    let mut rows = Vec::new();
+    let mut places: BTreeMap<u64, &Path> = BTreeMap::new();
+    let (mut rows, mut incomplete) = (Vec::new(), Vec::new());
     for folder in folders {
         let identity =
             read_identity(folder)?.ok_or_else(|| wrong(folder, "there are no results of a campaign".to_owned()))?;
+        let Shard { index, of } = identity.shard;
         let found = read_rows(&folder.join("runs.csv"), &identity)?;
         let expected = identity.shard.runs(identity.runs).count();
         if found.len() != expected {
-            return Err(wrong(folder, format!("{} of {expected} flights are done", found.len())));
+            incomplete.push(format!("{} has {} of its {expected} flights", folder.display(), found.len()));
         }
-        let identity = Identity { shard: Shard::WHOLE, ..identity };
-        match &whole {
-            Some(other) if *other != identity => {
-                return Err(wrong(folder, "not of the same campaign, seed and number of flights".to_owned()));
-            }
-            _ => whole = Some(identity),
+        // All but which part of it.
+        let identity = Identity { shard: Shard { index: 0, of }, ..identity };
+        if *whole.get_or_insert_with(|| identity.clone()) != identity {
+            return Err(wrong(folder, "not of the same campaign, seed, number of flights and of shards".to_owned()));
+        }
+        if let Some(other) = places.insert(index, folder) {
+            return Err(wrong(
+                folder,
+                format!("shard {}/{of} again, which {} holds, too", index + 1, other.display()),
+            ));
         }
         rows.extend(found);
     }
-    let nothing = || wrong(Path::new("merge"), "no folders".to_owned());
-    let identity = whole.ok_or_else(nothing)?;
+    let identity = whole.ok_or_else(|| merged("no folders".to_owned()))?;
+    let of = identity.shard.of;
+    let missing = (0..of)
+        .filter(|index| !places.contains_key(index))
+        .map(|index| format!("shard {}/{of} is missing", index + 1));
+    incomplete.extend(missing);
+    if !incomplete.is_empty() {
+        return Err(merged(format!("{}: the same `campaign` command flies what is left", incomplete.join("; "))));
+    }
     rows.sort_by_key(|row| row.run);
-    if let Some((index, row)) = (0..).zip(&rows).find(|(index, row)| row.run != *index) {
-        return Err(wrong(Path::new("merge"), format!("flight {} stands where {index} should", row.run)));
-    }
-    if rows.len() as u64 != identity.runs {
-        let message = format!("{} flights of {}: a shard is missing", rows.len(), identity.runs);
-        return Err(wrong(Path::new("merge"), message));
-    }
-    Ok((identity, rows))
+    Ok((Identity { shard: Shard::WHOLE, ..identity }, rows))
 }
 
 fn encode(rows: &[Row]) -> Vec<u8> {

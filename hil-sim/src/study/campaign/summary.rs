@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use super::fly::{Row, Verdict};
+use super::statistics::{interval, sensitivity};
 use crate::study::compare::{length, percentile};
 
 /// The shares of flights whose d_C is told.
@@ -21,6 +22,8 @@ pub struct Summary {
     pub seed: u64,
     /// Share of flights with d_C below 25 cm throughout the last quarter.
     pub success_rate: f64,
+    /// Clopper and Pearson's interval for it, of 95 % confidence.
+    pub success_interval: [f64; 2],
     /// Flights that had it.
     pub good: usize,
     /// Flights that had not and ended in hold.
@@ -43,6 +46,9 @@ pub struct Summary {
     /// Percentiles over the flights that reached it of the time from which d_C stayed below 25 cm,
     /// s.
     pub reached_s: BTreeMap<&'static str, f64>,
+    /// Share of the variance of d_C's rank that each drawn number explains alone (ε² over 20 bins), largest first; empty below 100
+    /// flights.
+    pub sensitivity: Vec<(&'static str, f64)>,
     /// First faults by how many flights had them.
     pub faults: BTreeMap<String, usize>,
     /// Every flight that failed, with its reason.
@@ -81,6 +87,8 @@ pub fn summarize(seed: u64, rows: &[Row]) -> Summary {
         runs: rows.len(),
         seed,
         success_rate: good as f64 / rows.len().max(1) as f64,
+        success_interval: interval(good, rows.len()),
+        sensitivity: sensitivity(rows),
         good,
         held: count(&[Verdict::Held]),
         off: count(&[Verdict::Off]),
@@ -117,9 +125,11 @@ impl Summary {
         let Self { runs, good, held, off, crashed, non_finite, out_of_limits, fell_back, .. } = self;
         let _ = writeln!(
             text,
-            "{runs} flights: {good} good ({:.2} %), {held} in hold, {off} in another mode, {crashed} crashed; \
+            "{runs} flights: {good} good ({:.2} %; 95 % sure of {:.2} to {:.2} %), {held} in hold, {off} in another mode, {crashed} crashed; \
              {non_finite} with numbers that are not finite, {out_of_limits} outside limits; {fell_back} fell back on the way",
-            100.0 * self.success_rate
+            100.0 * self.success_rate,
+            100.0 * self.success_interval[0],
+            100.0 * self.success_interval[1],
         );
         let mut table = Table::new();
         table.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY);
@@ -135,6 +145,14 @@ impl Summary {
         let _ = writeln!(text, "{}", table.trim_fmt());
         for (fault, flights) in &self.faults {
             let _ = writeln!(text, "first fault {fault}: {flights}");
+        }
+        if !self.sensitivity.is_empty() {
+            let shares = self.sensitivity.iter().map(|(name, share)| format!("{name} {:.0} %", 100.0 * share));
+            let _ = writeln!(
+                text,
+                "largest d_C, by rank, is explained by: {} (each alone, ε² over 20 bins)",
+                shares.collect::<Vec<_>>().join(", ")
+            );
         }
         let mut worst: Vec<&Row> = rows.iter().collect();
         worst.sort_by(|a, b| b.dc_max_m.total_cmp(&a.dc_max_m));

@@ -1,13 +1,14 @@
 //! The comparison's files: `compare.json` for programs, one page of plots for people.
 
-use maud::{DOCTYPE, PreEscaped, html};
+use maud::{DOCTYPE, Markup, html};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
 use super::table::length;
 use super::{CASES, Case, Comparison, Contender, Row, worse};
-use crate::report::plot::{COLOURS, Curve, Drawn, time_log};
-use crate::report::{ReportError, STYLE, write_file};
+use crate::report::page::{figure, head};
+use crate::report::plot::{Area, COLOURS, Curve, Drawn, drawing, time_log};
+use crate::report::{ReportError, write_file};
 
 /// Writes `compare.json` and `compare.html` into `folder` and returns the page's path.
 ///
@@ -32,49 +33,31 @@ fn html(comparison: &Comparison) -> Result<String, ReportError> {
     let figures = flown
         .iter()
         .map(|(case, rows)| {
-            draw(rows).map_err(|error| ReportError::Figure { name: case.name.to_owned(), message: error.to_string() })
+            let caption = format!(
+                "{}: {}. Median (thick) and 95th percentile (thin) of d_C over the flights.",
+                case.name, case.title
+            );
+            Ok(figure(case.name, &drawing(case.name, &caption, (1000, 340), |area| panel(area, rows))?, &caption))
         })
         .collect::<Result<Vec<_>, _>>()?;
+    let heading = "Four laws against the world";
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "Four laws against the world" }
-                style { (PreEscaped(STYLE)) }
-            }
+            (head(heading))
             body {
-                h1 { "Four laws against the world" }
-                p {
-                    "The paper's vehicle on a circle of 5 m at 1 m/s, 500 Hz, law in binary32: " (comparison.runs)
-                    " random starts a case, the same for every law, seed " (comparison.seed)
-                    ". Equal poles for all: −1…−6, −1…−5, −2, −3. Thrust is limited to 3…60 N, torque to ±3 N·m. Known lag and latency are "
-                    "compensated by every law alike. A flight of 40 s is good when its distance d" sub { "C" }
-                    " from the circle stays below 25 cm in the last 10 s."
-                }
-                div.wide {
-                    table {
-                        thead { tr { th { "case" } th { "what is wrong" } @for law in Contender::ALL { th { (law.name()) } } } }
-                        tbody {
-                            @for (case, rows) in &flown {
-                                tr {
-                                    td { a href={ "#" (case.name) } { (case.name) } } td { (case.title) }
-                                    @for row in rows {
-                                        td { (row.good) " good\n" (length(row.median_dc_m)) "\n(" (length(row.max_dc_m)) ")" }
-                                    }
-                                }
-                            }
-                        }
+                main {
+                    h1 { (heading) }
+                    p {
+                        "The paper's vehicle on a circle of 5 m at 1 m/s, 500 Hz, law in binary32: " (comparison.runs)
+                        " random starts a case, the same for every law, seed " (comparison.seed)
+                        ". Equal poles for all: −1…−6, −1…−5, −2, −3. Thrust is limited to 3…60 N, torque to ±3 N·m. Known lag and latency are "
+                        "compensated by every law alike. A flight of 40 s is good when its distance d" sub { "C" }
+                        " from the circle stays below 25 cm in the last 10 s."
                     }
-                }
-                p { "Good flights; median and, in brackets, largest of the flights' largest d" sub { "C" } " in the last quarter." }
-                pre { (worse(comparison)) }
-                @for ((case, _), svg) in flown.iter().zip(&figures) {
-                    figure id=(case.name) {
-                        (PreEscaped(svg))
-                        figcaption { (case.name) ": " (case.title) ". Median (thick) and 95th percentile (thin) of d" sub { "C" } " over the flights." }
-                    }
+                    (cases(&flown))
+                    pre tabindex="0" { (worse(comparison)) }
+                    @for figure in figures { (figure) }
                 }
             }
         }
@@ -82,18 +65,35 @@ fn html(comparison: &Comparison) -> Result<String, ReportError> {
     .into_string())
 }
 
-fn draw(rows: &[&Row]) -> Result<String, Box<dyn std::error::Error>> {
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, (1000, 340)).into_drawing_area();
-        area.fill(&WHITE)?;
-        panel(&area, rows)?;
-        area.present()?;
+fn cases(flown: &[(&Case, Vec<&Row>)]) -> Markup {
+    html! {
+        div.wide role="region" aria-label="Cases and laws" tabindex="0" {
+            table.results {
+                caption { "Good flights; median and, in brackets, largest of the flights' largest d" sub { "C" } " in the last quarter." }
+                thead {
+                    tr {
+                        th.words scope="col" { "case" }
+                        th.words scope="col" { "what is wrong" }
+                        @for law in Contender::ALL { th scope="col" { (law.name()) } }
+                    }
+                }
+                tbody {
+                    @for (case, rows) in flown {
+                        tr {
+                            th scope="row" { a href={ "#" (case.name) } { (case.name) } }
+                            td.words { (case.title) }
+                            @for row in rows {
+                                td { (row.good) " good\n" (length(row.median_dc_m)) "\n(" (length(row.max_dc_m)) ")" }
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
-    Ok(svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1))
 }
 
-fn panel(area: &crate::report::plot::Area<'_>, rows: &[&Row]) -> Drawn {
+fn panel(area: &Area<'_>, rows: &[&Row]) -> Drawn {
     let curve = |row: &Row, column: usize, label: String, colour| Curve {
         label,
         points: row.trace.iter().map(|point| (point[0], point[column])).collect(),
