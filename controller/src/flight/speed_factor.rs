@@ -28,6 +28,8 @@ const MOST: f64 = 2.0;
 struct Decay<T>([T; LAGS]);
 
 impl<T: Real> Decay<T> {
+    // Rarely called: once is enough in the code.
+    #[inline(never)]
     fn over(time: T) -> Self {
         let x = time * T::lit(RATE);
         let mut decay = [(-x).exp(); LAGS];
@@ -37,6 +39,7 @@ impl<T: Real> Decay<T> {
         Self(decay)
     }
 
+    #[inline(never)]
     fn of(&self, deviations: &[T; LAGS]) -> [T; LAGS] {
         let mut after = [T::zero(); LAGS];
         for lag in 0..LAGS {

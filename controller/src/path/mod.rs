@@ -1,4 +1,4 @@
-//! Paths: closed curves in space with a speed and a yaw prescribed along them.
+//! Paths: curves in space with a speed and a yaw prescribed along them.
 //!
 //! A curve is the common zero of two functions, C = {h1(p) = 0, h2(p) = 0}, and runs along the unit tangent ρ, which is
 //! (∇h1 × ∇h2)/|∇h1 × ∇h2| or its opposite: **a curve states its direction**. The law sees a path only through its outputs (4),
@@ -104,7 +104,7 @@ impl<T: Real> Outputs<T> {
     }
 }
 
-/// A closed curve with speed and yaw along it.
+/// A curve with speed and yaw along it.
 pub trait Path<T: Real> {
     /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
