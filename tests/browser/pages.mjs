@@ -28,7 +28,7 @@ function check(what, condition) {
 hil("run", "tilted-circle");
 check("a flight of 60 s has at most 6 MB", statSync(join(out, "report.html")).size <= 6e6);
 execFileSync("mv", [join(out, "report.html"), join(out, "minute.html")]);
-check("a lost flight ends with an error", spawnSync(program, ["run", "fig2a", "fig2b", scenario("lost.toml"), "--unchecked", "--quiet", "--out", out]).status === 1);
+check("a lost flight ends with an error", spawnSync(program, ["run", "fig2a", "fig2b", scenario("lost.toml"), "--quiet", "--out", out]).status === 1);
 hil("campaign", "--runs", "24");
 hil("campaign", "--replay", "3", "--runs", "24");
 hil("compare", "--runs", "1");
