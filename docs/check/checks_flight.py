@@ -174,6 +174,54 @@ def curves():
         assert v <= v0 and v * v * math.sqrt(square) <= 1.2
 
 
+@covers("15.8", "15.9", "15.10")
+def splines():
+    """A span against de Boor's recursion over its knots, and its derivatives by differences."""
+
+    def bases(degree, u):
+        row = [1.0] + [0.0] * degree
+        for d in range(1, degree + 1):
+            last = lambda i: row[i] if 0 <= i < d else 0.0  # noqa: E731
+            row = [((u + d - i) * last(i - 1) + (1 - u + i) * last(i)) / d for i in range(d + 1)]
+        return row
+
+    def de_boor(points, u):
+        # The span [7, 8] of knots 0 … 15.
+        t, column = 7 + u, list(points)
+        for r in range(1, 8):
+            for j in range(7, r - 1, -1):
+                share = (t - j) / (8 - r)
+                column[j] = column[j - 1] * (1 - share) + column[j] * share
+        return column[7]
+
+    points = [Vec(*numbers(3, 3.0)) for _ in range(8)]
+    for u in (0.0, 0.2, 0.7, 1.0):
+        differences = list(points)
+        for k in range(4):
+            coefficient = NOTHING
+            for weight, d in zip(bases(7 - k, u), differences):
+                coefficient = coefficient + d * (weight / math.factorial(k))
+            if k == 0:
+                close(coefficient, de_boor(points, u), 1e-13, "(15.8), the curve")
+            elif k == 1:
+                close(coefficient, derivative(lambda h: de_boor(points, u + h), 1e-3), 1e-9, "(15.8), its derivative")
+            differences = [b - a for a, b in zip(differences, differences[1:])]
+        close(sum(bases(7, u)), 1.0, 1e-14, "the weights")
+
+
+@covers("15.11")
+def stops():
+    target, most, rate, s, h = 20.0, 2.0, 0.5, 0.0, 0.001
+    places = []
+    for i in range(40000):
+        middle = s + h / 2 * most * math.tanh(rate * (target - s) / most)
+        s += h * most * math.tanh(rate * (target - middle) / most)
+        if i in (20000, 21000):
+            places.append(target - s)
+    close(places[1] / places[0], math.exp(-rate), 1e-3, "the rate of the approach")
+    close(s, target, 1e-5, "the stop")
+
+
 @covers("16.1")
 def rotors():
     """Force and torque of one rotor by the cross product."""

@@ -1,17 +1,21 @@
 //! Joining a path from afar: the path starts where the payload is, and slides home.
 //!
-//! When it is joined the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law then follows the curve displaced by
+//! When it is joined the payload, at velocity V, is at p₀ + D, p₀ a point of the curve. The law
+//! then follows the curve displaced by
 //!
 //! ```text
-//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0
-//! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶      (I the regularized incomplete beta function)
+//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0       (13.1)
+//! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶                             (13.2)
 //! ```
 //!
-//! which starts where the payload is and as fast as it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives zero
-//! at either end, so the displacement asks for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is,
-//! go to the path's along with the slide. T_b and T are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt,
-//! rod angle and thrust, and the slide the one on speed; where it is the snap that limits a brake, it takes somewhat longer. The displacement is
-//! rigid, so this works for any path, in metres, and meets no singularity of the curve's functions on the way.
+//! (I: the regularized incomplete beta function) which starts where the payload is and as fast as
+//! it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives
+//! zero at either end, so the displacement asks for no step in thrust or torque. Speed along the
+//! curve, from rest, and yaw, from where it is, go to the path's along with the slide. T_b and T
+//! are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt,
+//! rod angle and thrust, and the slide the one on speed; where it is the snap that limits a brake,
+//! it takes somewhat longer. The displacement is rigid, so this works for any path, in metres, and
+//! meets no singularity of the curve's functions on the way.
 
 use model::{OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;
@@ -27,10 +31,19 @@ use crate::ranges::{
 /// max |S′|, |S″|, |S‴| and |S⁗| of the profile over x ∈ [0, 1].
 const PEAKS: [f64; 4] = [2.932_617_187_5, 13.176_705_784, 140.765_625, 1_341.111_326];
 
-/// Shortest brake or slide, s: speed and yaw are blended in even where there is no distance to cover.
+/// Shortest brake or slide, s: speed and yaw are blended in even where there is no distance to
+/// cover.
 const SHORTEST: f64 = 3.0;
 
 /// What an approach may ask of the vehicle, on top of the path itself.
+///
+/// ```
+/// use controller::{ApproachLimits, Vehicle, VehicleParams};
+///
+/// let hurried = ApproachLimits { speed: 5.0, acceleration: 2.5, ..ApproachLimits::gentle() };
+/// assert!(hurried.pace(&Vehicle::new(VehicleParams::<f32>::paper())?).is_ok());
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ApproachLimits<T> {
     /// Speed of the slide, m/s.
@@ -75,8 +88,8 @@ impl<T: Real> ApproachLimits<T> {
 
     /// The limits as the payload's derivatives have them.
     ///
-    /// An acceleration a of the payload needs a rod angle of atan(a/(g − a)) at most, and a tilt of as much with a + (m_Q/M)(L/g) p⁗ for a:
-    /// half of the tilt is for either.
+    /// An acceleration a of the payload needs a rod angle of atan(a/(g − a)) at most, and a tilt of
+    /// as much with a + (m_Q/M)(L/g) p⁗ for a: half of the tilt is for either (13.6).
     ///
     /// # Errors
     /// The limit that is out of its [range](crate::ranges).
@@ -114,10 +127,12 @@ impl<T: Real> ApproachLimits<T> {
 
 /// How fast the payload may be moved by an approach: [`ApproachLimits::pace`].
 ///
-/// The time T for a motion of size x (a speed to lose, a distance to go) has T² ≥ a x², T⁴ ≥ b x² and T⁸ ≥ c x².
+/// The time T for a motion of size x (a speed to lose, a distance to go) has T² ≥ a x², T⁴ ≥ b
+/// x² and T⁸ ≥ c x² (13.7).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace<T> {
-    /// a, b, c of the brake: by acceleration, and by snap, of whose three factors T one is taken for [`SHORTEST`].
+    /// a, b, c of the brake: by acceleration, and by snap, of whose three factors T one is taken
+    /// for [`SHORTEST`].
     brake: [T; 3],
     /// a, b, c of the slide: by speed, acceleration and snap.
     slide: [T; 3],
@@ -166,13 +181,15 @@ impl<T: Real> Approach<T> {
         }
     }
 
-    /// None, at `position`: the path searches it, and its determinant there is what others are compared with.
+    /// None, at `position`: the path is searched for its nearest point, and later determinants are
+    /// compared with the one there.
     pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
         while !path.search(position) {}
         Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
     }
 
-    /// Begins at `state`, if the path has been searched and a point of it is found; v_d is flown times `factor`.
+    /// Begins at `state`, if the path has been searched and a point of it is found; v_d is flown
+    /// times `factor`.
     pub(crate) fn join<P: Path<T> + ?Sized>(
         &mut self,
         path: &mut P,
@@ -194,7 +211,8 @@ impl<T: Real> Approach<T> {
         Ok(())
     }
 
-    /// Begins `displacement` (m) away, moving at `velocity` (m/s) as seen from where it leads to, with `yaw` (rad) to turn.
+    /// Begins `displacement` (m) away, moving at `velocity` (m/s) as seen from where it leads to,
+    /// with `yaw` (rad) to turn.
     pub(crate) fn over(pace: &Pace<T>, displacement: Vector3<T>, velocity: Vector3<T>, yaw: T) -> Self {
         let braking = duration(&pace.brake, &velocity);
         let displacement = displacement + velocity * (braking * T::lit(0.5));
@@ -212,7 +230,8 @@ impl<T: Real> Approach<T> {
         self.elapsed < self.duration()
     }
 
-    /// The determinant (∇h1 × ∇h2)·ρ of the path's 3×3 system at the point that was joined; 1 if none was.
+    /// The determinant (∇h1 × ∇h2)·ρ of the path's 3×3 system at the point that was joined; 1 if
+    /// none was.
     pub fn path_det(&self) -> T {
         self.path_det
     }
@@ -230,14 +249,15 @@ impl<T: Real> Approach<T> {
         }
     }
 
-    /// Takes the displacement of `ahead` s from now out of `position`, if there is one then, and returns what [`fade`](Self::fade) needs.
+    /// Takes the displacement of `ahead` s from now out of `position`, if there is one then, and
+    /// returns what [`fade`](Self::fade) needs.
     #[inline(always)]
     pub(crate) fn leave(&self, ahead: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
         let elapsed = self.elapsed + ahead;
         (elapsed < self.duration()).then(|| self.slide(elapsed, position))
     }
 
-    // Apart: a step on the path does without it.
+    // Out of line: a step on the path does not need it.
     #[inline(never)]
     fn slide(&self, elapsed: T, position: &mut PositionSeries<T>) -> Fading<T> {
         let is_braking = elapsed < self.braking;
@@ -247,7 +267,7 @@ impl<T: Real> Approach<T> {
         if is_braking {
             let e: Series<T, 7> = s.truncate::<6>().integrate(-area);
             displace(position, &e, &self.velocity);
-            // The slide's own has yet to begin; and from then on E is 0.
+            // The slide has yet to begin, and its S is 1; once it has begun, E is 0.
             s = Series::constant(T::one());
         }
         displace(position, &s, &self.displacement);
@@ -277,10 +297,12 @@ fn displace<T: Real>(position: &mut PositionSeries<T>, series: &Series<T, 7>, al
 /// S of the slide, from 1 to 0.
 pub(crate) struct Fading<T>(Series<T, 7>);
 
-/// S(t/`duration`) about t = `elapsed`, from 0 to `duration`, as a series in time, and ∫S from t to `duration`.
+/// S(t/`duration`) about t = `elapsed`, from 0 to `duration`, as a series in time, and ∫S from t to
+/// `duration`.
 #[inline(never)]
 fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
-    // The recurrence divides by x (1 − x); so near an end all derivatives are next to nothing, and what is left out less.
+    // The recurrence divides by x (1 − x). Near an end, where S and its derivatives hardly move, x
+    // is taken a little inside.
     const END: f64 = 1e-6;
     let half = T::lit(0.5);
     let rate = T::one() / duration;
@@ -290,7 +312,8 @@ fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
     let cube = xy * xy * xy;
     let sixth = cube * cube;
 
-    // The slope f = −12012 (x y)⁶ has x y f′ = 6 (x y)′ f; x y is a quadratic of time, so each coefficient follows from the two before.
+    // The slope f = −12012 (x y)⁶ has x y f′ = 6 (x y)′ f; x y is a quadratic of time, so each
+    // coefficient follows from the two before (13.3).
     let per_xy = T::one() / xy;
     let first = (y - x) * rate * per_xy;
     let second = -(rate * rate) * per_xy;
@@ -310,7 +333,8 @@ fn profile<T: Real>(elapsed: T, duration: T) -> (Series<T, 7>, T) {
     (Series(s), area)
 }
 
-/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: the weights of the two preceding coefficients in the k-th coefficient of S.
+/// (8 − k)/k and (15 − k) (k − 2)/(k (k − 1)), k from 2 to 6: the weights of the two preceding
+/// coefficients in the k-th coefficient of S.
 const RECURRENCE: [[f64; 2]; 5] =
     [[3.0, 0.0], [5.0 / 3.0, 2.0], [1.0, 11.0 / 6.0], [3.0 / 5.0, 3.0 / 2.0], [1.0 / 3.0, 6.0 / 5.0]];
 
@@ -332,9 +356,11 @@ struct Nearest<T> {
 const SEARCH_STEPS: usize = 50;
 /// A step longer than this, m, is cut: far from the curve its functions may be strongly curved.
 const LONGEST_STEP: f64 = 5.0;
-/// A point is on the curve when the last step was shorter than this, m: what f32 resolves at a hundred metres.
+/// A point is on the curve when the last step was shorter than this, m: what f32 resolves at a
+/// hundred metres.
 const CLOSE: f64 = 1e-4;
-/// The step, m, along each axis where the functions are stationary, as at a circle's centre: any direction will do.
+/// The step, m, along each axis where the functions are stationary, as at a circle's centre: any
+/// direction will do.
 const ANY_STEP: f64 = 0.1;
 
 /// A point of the path near `position`: Newton's search on h1 = h2 = 0, across the tangent.
@@ -369,14 +395,16 @@ mod tests {
 
     #[test]
     fn profile_falls_from_one_to_zero_with_six_flat_derivatives() {
-        // Of a slide of 4 s. Its ends are taken a millionth of it inside, where S has hardly begun: 1716 (1e-6)⁷ from its end.
+        // Of a slide of 4 s. Its ends are taken a millionth of it inside, where S has hardly begun:
+        // 1716 (1e-6)⁷ from its end.
         for (elapsed, value) in [(0.0, 1.0), (2.0, 0.5), (4.0, 0.0), (5.0, 0.0)] {
             let (profile, area) = profile(elapsed, 4.0_f64);
             assert!((profile.value() - value).abs() < 1e-12, "{elapsed}");
             assert!(elapsed > 0.0 || (area - 2.0).abs() < 5e-6, "{area}");
             assert!(elapsed < 4.0 || area.abs() < 1e-12, "{area}");
         }
-        // The last of them is next to zero rather than zero, by 12012 · 6! · 1e-6 as |S⁽⁶⁾| has peaks of 2e5, all over 4⁶.
+        // The last of them is next to zero rather than zero, by 12012 · 6! · 1e-6 as |S⁽⁶⁾| has
+        // peaks of 2e5, all over 4⁶.
         for elapsed in [0.0, 4.0, 5.0] {
             for k in 1..=6 {
                 assert!(profile(elapsed, 4.0_f64).0.derivative(k).abs() < 3e-3, "{elapsed} {k}");
@@ -430,7 +458,8 @@ mod tests {
         }
     }
 
-    /// The largest snap: half of the acceleration that the tilt allows, g/(1 + cot), over the swing's (m_Q/M)(L/g).
+    /// The largest snap: half of the acceleration that the tilt allows, g/(1 + cot), over the
+    /// swing's (m_Q/M)(L/g).
     fn largest_snap(vehicle: &Vehicle<f64>, limits: &ApproachLimits<f64>) -> f64 {
         let params = vehicle.params();
         let lean = 1.0 / (1.0 + 1.0 / libm::tan(limits.tilt));

@@ -1,7 +1,8 @@
-//! The path-following law (11), (13), with the paper's integral action (15).
+//! The path-following law, (5.3) to (5.8), with the paper's integral action (5.4).
 //!
-//! State, ζ → [lift](mod@crate::law::lift) → outputs along the [path](crate::path) → ν → one 3×3 system → [lower](mod@crate::law::lower) →
-//! u_ζ, τ. Relative degrees are {6, 6, 5, 2}: ξ has 19 numbers.
+//! State, ζ → [lift](mod@crate::law::lift) → outputs along the [path](crate::path) → ν → one
+//! 3×3 system → [lower](mod@crate::law::lower) → u_ζ, τ. Relative degrees are {6, 6, 5, 2}: ξ
+//! has 19 numbers.
 
 use model::{Disturbance, OutOfRange, Real, State, Vehicle, Yaw};
 
@@ -17,7 +18,19 @@ use crate::law::{Ahead, Law};
 use crate::path::{Outputs, Path};
 use crate::ranges::BANDWIDTH;
 
-/// The gains of (13) and (15), low order first: ν = −K ξ − (K̃ ξ̃, 0).
+/// The gains of (5.3), low order first: ν = −K ξ − (K̃ ξ̃, 0).
+///
+/// ```
+/// use controller::Gains;
+///
+/// // Poles to fly with, and integral action on height.
+/// let gains = Gains { integral: [0.0, 100.0, 0.0], ..Gains::spread(1.0_f32)? };
+/// assert!(gains.check().is_ok());
+///
+/// // Too much of it is no stable loop, and is refused.
+/// assert!(Gains { integral: [0.0, 1e5, 0.0], ..gains }.check().is_err());
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains<T> {
     /// Of h1, ḣ1, …, h1⁽⁵⁾.
@@ -45,8 +58,8 @@ impl<T: Real> Gains<T> {
         }
     }
 
-    /// Spread poles to fly with, without integral action: −1, −2, … times `bandwidth` (1/s) for h1, h2 and h3, and −2, −3 times
-    /// it for the yaw.
+    /// Spread poles to fly with, without integral action: −1, −2, … times `bandwidth` (1/s) for h1,
+    /// h2 and h3, and −2, −3 times it for the yaw.
     ///
     /// # Errors
     /// `bandwidth` is out of its [range](crate::ranges::BANDWIDTH).
@@ -87,8 +100,8 @@ pub struct Xi<T> {
     pub h4: [T; 2],
 }
 
-/// The path-following law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance as they are, without looking
-/// ahead.
+/// The path-following law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance
+/// as they are, without looking ahead.
 pub fn follow<T: Real, P: Path<T> + ?Sized>(
     vehicle: &Vehicle<T>,
     path: &mut P,
@@ -108,7 +121,8 @@ pub fn follow<T: Real, P: Path<T> + ?Sized>(
 }
 
 impl<T: Real> Solution<T, Xi<T>> {
-    /// ξ and ν, from the path's outputs. Here and below each number is written where it stays, so that none is copied.
+    /// ξ and ν, from the path's outputs. Here and below each number is written where it stays, so
+    /// that none is copied.
     #[inline(always)]
     fn read(&mut self, gains: &Gains<T>, integral: &[T; 3], yaw: &Yaw<T>, outputs: &Outputs<T>) {
         let [s1, s2] = &outputs.surfaces;
@@ -137,7 +151,7 @@ impl<T: Real> Solution<T, Xi<T>> {
         yaw: &Yaw<T>,
         outputs: &Outputs<T>,
     ) {
-        // ν − b̄ is what p⁽⁶⁾ has to give.
+        // ν − χ is what p⁽⁶⁾ has to give (5.5).
         let [s1, s2] = &outputs.surfaces;
         let [nu1, nu2, nu3, nu4] = self.nu;
         let (position_6, path_det) =
@@ -158,7 +172,8 @@ impl<T: Real> Solution<T, Xi<T>> {
     }
 }
 
-/// How long integral action waits after the thrust was limited, s: five time constants of a pole at −1.
+/// How long integral action waits after the thrust was limited, s: five time constants of a pole at
+/// −1.
 const RECOVERY: f64 = 5.0;
 
 /// Speed below which the payload rests, m/s.
@@ -168,7 +183,7 @@ const AT_REST: f64 = 0.01;
 #[derive(Clone, Debug)]
 pub struct Follow<T, P> {
     path: P,
-    /// As they act: the lead over half a hold, which the integrals lack, is added to the gains of h1, h2 and h3.
+    /// As they act: those of h1, h2 and h3 are raised by (11.5).
     gains: Gains<T>,
     integral: [T; 3],
     /// The last answer, kept where it was made.
@@ -184,8 +199,8 @@ pub struct Follow<T, P> {
 }
 
 impl<T: Real, P: Path<T>> Follow<T, P> {
-    /// On `path` with `gains` that are found stable. ξ̃ is kept for the sample and the law acts `lead` s later:
-    /// ξ̃(lead) = ξ̃ + lead · h.
+    /// On `path` with `gains` that are found stable. ξ̃ is kept for the sample and the law acts
+    /// `lead` s later: ξ̃(lead) = ξ̃ + lead · h.
     ///
     /// # Errors
     /// The first output whose loop is not stable.
@@ -222,8 +237,8 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         &self.integral
     }
 
-    /// Has the path flown at `factor` times its speed, smoothly from the factor that is flown: 0 stops, less goes back, at most 2
-    /// either way. NaN changes nothing.
+    /// Has the path flown at `factor` times its speed, smoothly from the factor that is flown: 0
+    /// stops, less goes back, at most 2 either way. NaN changes nothing.
     pub fn set_speed_factor(&mut self, factor: T) {
         self.speed_factor.wish(factor);
     }
@@ -233,7 +248,8 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         self.speed_factor.value()
     }
 
-    /// Goes on from the path's stop where the payload rests. `false`, and nothing changed, if it does not or nothing comes after.
+    /// Goes on from the path's stop where the payload rests. `false`, and nothing changed, if it
+    /// does not or nothing comes after.
     #[cold]
     pub fn go_on(&mut self) -> bool {
         let goes_on = self.rested > T::zero() && self.path.go_on();
@@ -244,7 +260,8 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         goes_on
     }
 
-    /// Counts how long the payload has rested at the path's stop, and goes on when that is long enough.
+    /// Counts how long the payload has rested at the path's stop, and goes on when that is long
+    /// enough.
     #[inline(always)]
     fn rest(&mut self, period: T) {
         let Some(dwell) = self.path.dwell() else { return };
@@ -256,7 +273,7 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         }
     }
 
-    /// Nothing integrated, and no limit met: as a law that has just been made.
+    /// Clears the integrals and the memory of limits, as in a law just made.
     fn reset_integrals(&mut self) {
         self.integral = [T::zero(); 3];
         self.unsaturated = T::lit(RECOVERY);
@@ -295,7 +312,8 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
             let has_own = self.path.set_backward(is_backward);
             self.speed_factor.turned(has_own);
         }
-        // What the actuators can't give, no integral may ask for ever louder; nor count the way back for an error that stays.
+        // At the actuators' limit the integrals would wind up, and afterwards they would take the
+        // way back for a steady error.
         self.unsaturated = if is_saturated { T::zero() } else { self.unsaturated + period };
         if self.unsaturated >= T::lit(RECOVERY) {
             let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = self.solution.xi;

@@ -56,7 +56,8 @@ pub trait Law<T: Real> {
     /// Starts at `state` with an approach that keeps `pace`.
     ///
     /// # Errors
-    /// [`Refused`], and nothing has changed; if it is [`Refused::Searching`], the law is to be asked again in the next period.
+    /// [`Refused`], and nothing has changed; if it is [`Refused::Searching`], the law is to be
+    /// asked again in the next period.
     fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused>;
 
     /// The approach under way, if any.

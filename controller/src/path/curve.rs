@@ -19,8 +19,8 @@ pub struct Located<T> {
     pub length: Series<T, 6>,
     /// ρ·v, m/s, orders 0 to 5.
     pub speed: Series<T, 6>,
-    /// 1 − (curvature · distance towards the centre of curvature) for curves with a nearest point, whose coordinates end where
-    /// this reaches 0; 1 for the others.
+    /// 1 − (curvature · distance towards the centre of curvature) for curves with a nearest point,
+    /// whose coordinates end where this reaches 0; 1 for the others.
     pub reach_margin: T,
 }
 
@@ -45,7 +45,8 @@ impl<T: Real> Located<T> {
     }
 }
 
-/// A closed curve in space, as two functions that vanish on it. With a speed and a yaw it is a [`Path`](crate::Path):
+/// A closed curve in space, as two functions that vanish on it. With a speed and a yaw it is a
+/// [`Path`](crate::Path):
 ///
 /// ```
 /// use controller::{AlongTangent, Curve, Ellipse};
@@ -57,9 +58,9 @@ pub trait Curve<T: Real> {
     /// Evaluates the curve's functions along `position`.
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T>;
 
-    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m), as far as one control period
-    /// has time for: called once a period when a controller starts, until it is `true`. A curve that knows no nearest point
-    /// has nothing to do.
+    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m),
+    /// as far as one control period has time for: called once a period when a controller starts,
+    /// until it is `true`. A curve that knows no nearest point has nothing to do.
     fn search(&mut self, _position: &Vector3<T>) -> bool {
         true
     }
@@ -86,10 +87,12 @@ pub trait Curve<T: Real> {
 
 /// A curve that knows how its tangent turns.
 pub trait Curved<T: Real>: Curve<T> {
-    /// The derivative of [`Located::along`] in its own direction, (D`along`)·`along`, at the position that was located last.
+    /// The derivative of [`Located::along`] in its own direction, (D`along`)·`along`, at the
+    /// position that was located last.
     fn turning(&self, position: &PositionSeries<T>, located: &Located<T>) -> [Series<T, 6>; 3];
 
-    /// κ², 1/m²: the squared curvature of the curve of constant (h1, h2) through the payload; κ = |a × a′|/|a|³ with a = `along`.
+    /// κ², 1/m²: the squared curvature of the curve of constant (h1, h2) through the payload;
+    /// κ = |a × a′|/|a|³ with a = `along`.
     #[inline]
     fn curvature_squared(&self, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
         let bend = cross(&located.along, &self.turning(position, located));

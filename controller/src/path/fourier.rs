@@ -16,7 +16,8 @@ use crate::path::{Curve, Curved, Harmonics, Located};
 /// in f32.
 pub const NEWTON_STEPS: usize = 3;
 
-/// The curve c(σ) as a path. With σ(p) the nearest point, r = p − c(σ) and t = c′/|c′|,
+/// The curve c(σ) as a path. With σ(p) the nearest point, r = p − c(σ) and t = c′/|c′|, these
+/// are (15.3) and (15.4):
 ///
 /// ```text
 /// n1 = (e − (e·t) t)/|…|,   n2 = t × n1,   h1 = r·n1,   h2 = r·n2,   ρ = t
@@ -27,6 +28,21 @@ pub const NEWTON_STEPS: usize = 3;
 /// within the curve's reach, the distance of its nearest centre of curvature or second branch. The
 /// nearest point is followed from sample to sample by [`NEWTON_STEPS`](crate::path::NEWTON_STEPS)
 /// Newton steps, so a crossing branch can't catch it; [`Curve::search`] searches the whole curve.
+///
+/// ```
+/// use controller::{AlongTangent, Curve, CurvatureLimited, FourierPath, Harmonics};
+///
+/// let harmonics = Harmonics {
+///     center: [0.0, 0.0, -10.0_f32],
+///     cos: [[5.0, 0.0, 0.0], [0.0, 0.0, 0.5]],
+///     sin: [[0.0, 3.0, 0.0], [0.0; 3]],
+///     reference: [0.0, 0.0, 1.0],
+/// };
+/// // 2 m/s, slower in the bends.
+/// let speed = CurvatureLimited::new(2.0, 0.5)?;
+/// let path = FourierPath::new(harmonics)?.with_speed(speed).with_yaw(AlongTangent);
+/// # Ok::<(), controller::OutOfRange<f32>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourierPath<T, const K: usize> {
     harmonics: Harmonics<T, K>,

@@ -20,6 +20,19 @@ const LEAST_SINE: f64 = 0.1;
 
 /// The closed curve c(σ) = a0 + Σ_{k=1…K} (A_k cos kσ + B_k sin kσ), σ in rad, in N, m; and the
 /// direction that its normals are counted from. Plain data: it can stand in a `const`.
+///
+/// ```
+/// use controller::Harmonics;
+///
+/// // An ellipse of 5 m by 3 m that rises and falls by 0.5 m twice a lap.
+/// const LOOP: Harmonics<f32, 2> = Harmonics {
+///     center: [0.0, 0.0, -10.0],
+///     cos: [[5.0, 0.0, 0.0], [0.0, 0.0, 0.5]],
+///     sin: [[0.0, 3.0, 0.0], [0.0; 3]],
+///     reference: [0.0, 0.0, 1.0],
+/// };
+/// assert_eq!(LOOP.point(0.0).z, -9.5);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Harmonics<T, const K: usize> {
     /// a0.

@@ -18,8 +18,8 @@ const N: usize = 7;
 /// c by its Taylor coefficients about some σ₀, orders 0 to 7.
 pub(super) type Local<T> = [Vector3<T>; N + 1];
 
-/// σ − σ₀ of the point of the polynomial `local` nearest to a payload at `error` from its beginning
-/// c(σ₀), by `STEPS` of Newton from 0.
+/// σ − σ₀ of the point of the polynomial `local` nearest to a payload at `error` from its
+/// beginning c(σ₀), by `STEPS` of Newton from 0.
 ///
 /// Each step is `longest` at most, and the curvature's part of its divisor is bounded, so that it
 /// goes downhill wherever it starts.
@@ -49,8 +49,8 @@ pub(super) fn newton<T: Real>(r: &Vector3<T>, first: &Vector3<T>, second: &Vecto
     (r.dot(first) / divisor).clamp(-longest, longest)
 }
 
-/// σ(t) − σ(0) and its powers: (σ(t) − σ(0))ʲ/tʲ, orders 0 to 6 − j, for j from 1 on, one after the
-/// other.
+/// σ(t) − σ(0) and its powers: (σ(t) − σ(0))ʲ/tʲ, orders 0 to 6 − j, for j from 1 on, one
+/// after the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Advance<T>([T; N * (N - 1) / 2]);
 

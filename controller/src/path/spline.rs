@@ -1,11 +1,12 @@
 //! One span of a uniform B-spline of degree 7 (C⁶): its Taylor polynomial about any place of it.
 //!
-//! With knots at the whole numbers, the span [j, j + 1] belongs to eight control points P₀ … P₇, of
-//! which Pᵢ has its weight about i − 3 from the span's beginning. The k-th derivative is a spline
-//! of degree 7 − k over the k-th differences of the control points, so that
+//! With knots at the whole numbers, the span [j, j + 1] belongs to eight control points P₀ … P₇,
+//! of which Pᵢ has its weight about i − 3 from the span's beginning. The k-th derivative is a
+//! spline of degree 7 − k over the k-th differences of the control points, so that
 //!
 //! ```text
-//! c⁽ᵏ⁾(u)/k! = Σᵢ w_{k,i}(u) Δᵏ Pᵢ,   i = 0 … 7 − k,   w_{k,i} = N_{i,7−k}(u)/k!
+//! c⁽ᵏ⁾(u)/k! = Σᵢ w_{k,i}(u) Δᵏ Pᵢ,   i = 0 … 7 − k
+//! w_{k,i} = N_{i,7−k}(u)/k!                                         (15.8), (15.9)
 //! ```
 //!
 //! with the cardinal bases N of Cox's and de Boor's recursion (de Boor, *A Practical Guide to
@@ -104,8 +105,8 @@ impl<T: Real> Weights<T> {
         *changes = [[T::zero(); POINTS]; POINTS - 1];
     }
 
-    /// Taylor coefficients of a curve less P₃, from the steps Pᵢ₊₁ − Pᵢ of its control points: far
-    /// from the origin the steps hold what their difference would lose.
+    /// Taylor coefficients of a curve less P₃, from the steps Pᵢ₊₁ − Pᵢ of its control points:
+    /// far from the origin the steps hold what their difference would lose.
     #[inline(always)]
     pub(super) fn taylor_of_steps(&self, steps: [Vector3<T>; POINTS - 1]) -> [Vector3<T>; POINTS] {
         // Step i belongs to all points behind it, or, before P₃, is what the points up to it lack.

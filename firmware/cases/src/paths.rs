@@ -1,4 +1,5 @@
-//! The paths that are measured, each with points of it to draw states around. Parameters are the controller's at run time.
+//! The paths that are measured, each with points of it to draw states around. Parameters are the
+//! controller's at run time.
 
 use core::f32::consts::PI;
 

@@ -96,7 +96,8 @@ impl<T: Real> Search<T> {
 /// its fields and σ the parameter of its point nearest to the payload,
 ///
 /// ```text
-/// r = p − c(σ),   r·c′(σ) = 0,   h1 = r·n1(σ),   h2 = r·n2(σ),   ρ = c′/|c′|,   v_d(σ),   ψ_d(σ)
+/// r = p − c(σ),   r·c′(σ) = 0,   ρ = c′/|c′|                       (15.3)
+/// h1 = r·n1(σ),   h2 = r·n2(σ),   v_d(σ),   ψ_d(σ)                 (15.10)
 /// ```
 ///
 /// **h1 and h2 are in m, and |(h1, h2)| is the distance to the curve**, to within the few percent
