@@ -63,9 +63,9 @@ pub enum RouteError<T> {
     Pace(OutOfRange<T>),
     /// Fewer than two waypoints, or three for a closed route.
     TooFew,
-    /// The leg that begins at this waypoint is shorter than [`SHORTEST_LEG`].
+    /// The leg that begins at this waypoint is shorter than 0.05 m.
     ShortLeg(usize),
-    /// The route turns by more than [`LARGEST_TURN`] at this waypoint, without a stop.
+    /// The route turns by more than 150° (2.62 rad) at this waypoint, without a stop.
     SharpTurn(usize),
     /// The table is full: it needs more knots.
     Knots,

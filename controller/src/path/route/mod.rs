@@ -105,7 +105,7 @@ impl<T: Real> Search<T> {
 /// with the curve as little as can be, so that no direction of it is special.
 ///
 /// The nearest point is followed by its parameter, so another branch can't catch it, wherever that
-/// passes; only [`Path::search`] looks at the whole run, [`SEARCHED`] knots a call. It is followed
+/// passes; only [`Path::search`] looks at the whole run, 64 knots a call. It is followed
 /// by up to a span from sample to sample.
 ///
 /// An open run goes on straight beyond its ends, with v_d as it is there: the route's

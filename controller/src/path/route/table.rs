@@ -49,7 +49,7 @@ impl<T: Real> Knot<T> {
 ///
 /// Its curve belongs to the parameters from 0 to `knots` − 7. A closed run repeats its first seven
 /// knots at its end; an open one goes on straight at either end, at the speed it has there: its
-/// waypoints are [`BEYOND`] spans from its ends.
+/// waypoints are six spans from its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Run<T> {
     /// Where its knots begin in the table.
