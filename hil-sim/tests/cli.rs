@@ -121,11 +121,10 @@ fn quiet_is_silent() {
 
 #[test]
 fn scenario_errors_name_file_line_and_field() {
-    let cases: [(&str, String, usize, &str); 13] = [
+    let cases: [(&str, String, usize, &str); 12] = [
         ("unknown-key", SHORT.replace("duration_s", "duration"), 2, "duration"),
         ("unknown-controller-key", format!("{SHORT}speed = 3\n"), 6, "controller.speed"),
         ("unknown-path-key", SHORT.replace("radius", "radios"), 3, "path.radios"),
-        ("missing", SHORT.replace("duration_s = 0.5", ""), 1, "duration_s"),
         ("radius", SHORT.replace("5.0, p3", "-5.0, p3"), 3, "path.radius"),
         ("duration", SHORT.replace("0.5", "-1"), 2, "duration_s"),
         ("no-number", SHORT.replace("0.5", "nan"), 2, "duration_s"),

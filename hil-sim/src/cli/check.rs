@@ -1,7 +1,7 @@
 //! `check`: can a path be flown?
 
 use controller::{Vehicle, VehicleParams};
-use hil_sim::describe::course::{PathSpec, parse_path};
+use hil_sim::describe::course::PathSpec;
 use hil_sim::describe::scenario::{Law, Scenario};
 use hil_sim::study::check::{Limits, Reason};
 use std::error::Error;
@@ -80,32 +80,13 @@ pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Err
     }
 }
 
-/// What is to be checked: the path of a scenario, or of a file without a controller, which is for the paper's vehicle.
+/// The path of a scenario, for its vehicle and within its limits.
 fn subject(file: &Path) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Error>> {
-    if let Ok(text) = std::fs::read_to_string(file) {
-        let table: toml::Table = toml::from_str(&text).map_err(|error| format!("{}: {error}", file.display()))?;
-        if !table.contains_key("controller") {
-            return path_alone(table).map_err(|error| format!("{}: {error}", file.display()).into());
-        }
-    }
     let scenario = load::one(file)?;
     match scenario.controller.law {
         Law::Follow { path, .. } => Ok((path, vehicle(&scenario.vehicle)?, scenario.limits)),
         Law::Track { .. } => Err(format!("{}: the law \"track\" has no path to check", file.display()).into()),
     }
-}
-
-fn path_alone(mut table: toml::Table) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Error>> {
-    let vehicle = vehicle(&VehicleParameters::default())?;
-    let limits = match table.remove("limits") {
-        Some(value) => Limits::read("limits", value, &vehicle)?,
-        None => Limits::of(&vehicle),
-    };
-    let path = table.remove("path").ok_or("path: missing")?;
-    if let Some(unknown) = table.keys().next() {
-        return Err(format!("{unknown}: a file without controller has path and limits only").into());
-    }
-    Ok((parse_path("path", path)?, vehicle, limits))
 }
 
 fn vehicle(params: &VehicleParameters) -> Result<Vehicle<f64>, Box<dyn Error>> {

@@ -18,6 +18,7 @@ use hil_sim::describe::scenario::{CURVES, FIGURES};
 use hil_sim::fly::run::Arithmetic;
 use hil_sim::report::log::Format;
 use std::error::Error;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -116,6 +117,9 @@ enum Command {
     /// adds "b" and "A"). The state is taken as it is, without prediction; "integral" and "k_integral" may be left out.
     #[command(after_help = eval::EXAMPLES)]
     Eval,
+    /// Print every key of a scenario file, with unit, range, default and meaning.
+    #[command(after_help = "Examples:\n  hil-sim keys | less")]
+    Keys,
     /// Say whether paths can be flown, before anyone takes off.
     ///
     /// Walks each curve once round: is it closed, smooth, regular, free of self-crossings? Then what it asks of the vehicle at its
@@ -199,6 +203,10 @@ pub fn run() -> Ended {
         }
         Some(Command::Figures(logs)) => figures(&common, &logs),
         None => figures(&common, &Logs { log: vec![Format::Csv] }),
+        Some(Command::Keys) => {
+            write!(io::stdout().lock(), "{}", hil_sim::describe::keys::page())?;
+            Ok(ExitCode::SUCCESS)
+        }
         Some(Command::Eval) => eval::evaluate_lines(),
         Some(Command::Check { files }) => check::check(&common, &files),
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),

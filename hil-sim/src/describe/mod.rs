@@ -3,6 +3,7 @@
 pub mod course;
 pub mod formula;
 pub mod input;
+pub mod keys;
 pub mod reference;
 pub mod route;
 pub mod scenario;

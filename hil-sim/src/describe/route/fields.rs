@@ -1,7 +1,7 @@
 //! The fields of a path's description, and their way into a validated [`PathSpec`].
 
-use controller::Harmonics;
-use rig::{Field, Parameters, Shape, parameter};
+use controller::{Harmonics, OutOfRange};
+use rig::{Field, Parameter, Parameters, Shape, parameter};
 use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny};
 use std::collections::BTreeMap;
@@ -124,7 +124,15 @@ pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Resu
     };
     let speed = speed.ok_or_else(|| Invalid::new(join(at, "speed"), "missing"))?;
     let yaw = yaw.unwrap_or(YawSpec::Fixed(0.0));
-    PathSpec::new(curve, speed, yaw).map_err(|error| Invalid::out_of_range(at, error))
+    PathSpec::new(curve, speed, yaw).map_err(|error| {
+        // A curve of numbers names a parameter: what the description calls it is said.
+        let fields = Shape::named(&kind).map_or(&[][..], Shape::fields);
+        let table = Parameters::<f64>::default();
+        let name = |parameter: Parameter| table.at(parameter.index()).map(|(entry, _)| entry.name.as_str());
+        let is_meant = |field: &&Field| field.parameters().any(|parameter| name(parameter) == Some(error.field));
+        let field = fields.iter().find(is_meant).map_or(error.field, |field| field.name);
+        Invalid::out_of_range(at, OutOfRange { field, ..error })
+    })
 }
 
 /// What is given for a field of a curve.
@@ -229,7 +237,10 @@ fn yaw_of(
     Ok(match yaw {
         YawField::Fixed(yaw) => YawSpec::Fixed(within(&join(at, "yaw"), yaw, -YAW_LIMIT..=YAW_LIMIT)?),
         YawField::Formula(text) if text == "tangent" => YawSpec::Tangent,
-        YawField::Formula(text) => YawSpec::Formula(parse("yaw", &text)?),
+        YawField::Formula(text) => YawSpec::Formula(parse("yaw", &text).map_err(|error| {
+            let message = format!("{}; or \"tangent\", or {{ x, y }} to point to", error.message);
+            Invalid::new(error.field, message)
+        })?),
         YawField::PointingAt(LineFields { x, y }) => {
             YawSpec::PointingAt { target: all_within(&join(at, "yaw"), [x, y], 1e5)? }
         }

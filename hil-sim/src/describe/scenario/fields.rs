@@ -19,6 +19,7 @@ struct ScenarioFields {
     figure: Option<String>,
     #[serde(default)]
     vehicle: VehicleFields,
+    #[serde(default)]
     controller: ControllerFields,
     path: Option<toml::Value>,
     reference: Option<toml::Value>,
@@ -35,6 +36,7 @@ struct ScenarioFields {
     #[serde(default)]
     seed: u64,
     limits: Option<toml::Value>,
+    #[serde(default = "ten_seconds")]
     duration_s: f64,
     #[serde(default = "four")]
     substeps: u32,
@@ -44,27 +46,40 @@ struct ScenarioFields {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 struct ControllerFields {
-    law: LawName,
-    #[serde(default = "one_kilohertz")]
+    law: Option<LawName>,
     rate_hz: f64,
-    #[serde(default = "yes")]
     look_ahead: bool,
     poles: Option<Vec<Vec<PoleField>>>,
     k: Option<Vec<Vec<f64>>>,
-    #[serde(default)]
     k_integral: [f64; 3],
     zeta: Option<[f64; 4]>,
-    #[serde(default)]
     vehicle: VehicleFields,
-    #[serde(default)]
     latency_s: f64,
-    #[serde(default)]
     rotor_lag_s: f64,
-    #[serde(default)]
     observer: ObserverFields,
     limits: Option<LimitFields>,
+}
+
+impl Default for ControllerFields {
+    /// The paper's law at 1 kHz.
+    fn default() -> Self {
+        Self {
+            law: None,
+            rate_hz: 1000.0,
+            look_ahead: true,
+            poles: None,
+            k: None,
+            k_integral: [0.0; 3],
+            zeta: None,
+            vehicle: VehicleFields::default(),
+            latency_s: 0.0,
+            rotor_lag_s: 0.0,
+            observer: ObserverFields::default(),
+            limits: None,
+        }
+    }
 }
 
 /// Bandwidths, rad/s.
@@ -139,11 +154,9 @@ fn four() -> u32 {
 fn ten_milliseconds() -> f64 {
     0.01
 }
-fn one_kilohertz() -> f64 {
-    1000.0
-}
-fn yes() -> bool {
-    true
+/// As Fig. 3's flights.
+fn ten_seconds() -> f64 {
+    10.0
 }
 
 /// Longest flight, s.
@@ -251,20 +264,31 @@ fn law(
 ) -> Result<Law, Invalid> {
     let gains =
         GainFields { poles: controller.poles.clone(), k: controller.k.clone(), integral: controller.k_integral };
-    match (controller.law, path, reference) {
-        (LawName::Follow, Some(path), None) => {
-            Ok(Law::Follow { path: parse_path("path", path)?, gains: gains::follow(gains)? })
+    let named = match (controller.law, &reference) {
+        (Some(law), _) => law,
+        (None, Some(_)) if path.is_none() => LawName::Track,
+        (None, _) => LawName::Follow,
+    };
+    match (named, path, reference) {
+        (LawName::Follow, path, None) => {
+            let path = parse_path("path", path.unwrap_or_else(|| circle("speed", -5.0)))?;
+            Ok(Law::Follow { path, gains: gains::follow(gains)? })
         }
-        (LawName::Track, None, Some(reference)) => {
-            Ok(Law::Track { reference: parse_reference("reference", reference)?, gains: gains::track(gains)? })
+        (LawName::Track, None, reference) => {
+            let reference = parse_reference("reference", reference.unwrap_or_else(|| circle("rate", 1.0)))?;
+            Ok(Law::Track { reference, gains: gains::track(gains)? })
         }
         (LawName::Follow, _, Some(_)) => Err(Invalid::new("reference", "the law \"follow\" takes a path")),
         (LawName::Track, Some(_), _) => Err(Invalid::new("path", "the law \"track\" takes a reference")),
-        (LawName::Follow, None, None) => Err(Invalid::new("path", "missing: the law \"follow\" takes a path")),
-        (LawName::Track, None, None) => {
-            Err(Invalid::new("reference", "missing: the law \"track\" takes a reference"))
-        }
     }
+}
+
+/// The paper's circle, flown at this `speed` or `rate`: clockwise as seen from above in Fig. 3.
+fn circle(motion: &str, value: f64) -> toml::Value {
+    let numbers = [("radius", 5.0), ("p3", -10.0), (motion, value)];
+    let mut table = toml::Table::from_iter(numbers.map(|(name, number)| (name.to_owned(), number.into())));
+    table.insert("kind".to_owned(), "circle".into());
+    table.into()
 }
 
 impl ObserverFields {

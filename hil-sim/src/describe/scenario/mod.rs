@@ -27,6 +27,8 @@
 //! limits = { thrust = [3.0, 60.0], torque = [3.0, 3.0, 3.0] }                 # on its commands, N and N·m
 //! ```
 //!
+//! Every key, with unit, range and default, is in `docs/scenario.md`, by [`keys`](crate::describe::keys).
+//!
 //! `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described in [`models`](crate::world); `seed` is that of their random numbers.
 
 mod document;

@@ -1,0 +1,526 @@
+//! Every key of a scenario file: its unit, range, default and meaning, as `hil-sim keys` prints them and `docs/scenario.md` holds them.
+//!
+//! Tests hold this table to what reads the files: each key that is read stands here, each range is the one that is refused beyond, and
+//! each default the value that is taken.
+
+use std::fmt::Write as _;
+
+/// What a key may be.
+#[derive(Clone, Copy, Debug)]
+pub enum Values {
+    /// A number in a range.
+    Number(f64, f64),
+    /// A whole number in a range.
+    Whole(u64, u64),
+    /// So many numbers, each in a range.
+    Each(usize, f64, f64),
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// As the text says.
+    Other(&'static str),
+}
+
+/// A key.
+#[derive(Clone, Copy, Debug)]
+pub struct Key {
+    /// Its name in its table.
+    pub name: &'static str,
+    /// Of its numbers.
+    pub unit: &'static str,
+    /// What it may be.
+    pub values: Values,
+    /// As TOML, or in brackets what goes for one that is left out; empty for one that must be given.
+    pub default: &'static str,
+    /// What it is.
+    pub meaning: &'static str,
+}
+
+/// A table of a scenario file.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    /// Its name, empty for the keys before all tables.
+    pub table: &'static str,
+    /// What it is about.
+    pub about: &'static str,
+    /// A scenario in which the table is as short as it can be, but for what may be left out.
+    pub least: &'static str,
+    /// Its keys.
+    pub keys: &'static [Key],
+}
+
+const fn key(
+    name: &'static str,
+    unit: &'static str,
+    values: Values,
+    default: &'static str,
+    meaning: &'static str,
+) -> Key {
+    Key { name, unit, values, default, meaning }
+}
+
+use Values::{Each, Number, Other, Whole, Word};
+
+const SPEED: Key = key(
+    "speed",
+    "m/s",
+    Other("-100 to 100, a formula, or { max, acceleration }"),
+    "",
+    "v_d along the curve; with max and acceleration slower where the curve bends.",
+);
+const YAW: Key = key(
+    "yaw",
+    "rad",
+    Other("-1000 to 1000, a formula, \"tangent\", or { x, y }"),
+    "0.0",
+    "ψ_d; with x and y the nose points to a vertical line.",
+);
+const CONSTANTS: Key = key("constants", "", Other("{ name = number, … }"), "{}", "Names for numbers in formulas.");
+const A: Key = key("a", "m", Number(0.01, 1e5), "", "Half axis along n1.");
+const B: Key = key("b", "m", Number(0.01, 1e5), "", "Half axis along n2.");
+const C0: Key = key("c0", "m", Number(-1e5, 1e5), "", "Height at p1 = 0; negative is above the origin.");
+const C1: Key = key("c1", "", Number(-100.0, 100.0), "0.0", "Slope of the height along n1.");
+const KIND: Key = key("kind", "", Other("as above"), "", "Which curve.");
+
+const MASSES: &[Key] = &[
+    key("payload_mass", "kg", Number(1e-3, 1e3), "0.5", "m_L."),
+    key("uav_mass", "kg", Number(0.01, 1e3), "2.5", "m_Q, without the payload."),
+    key("rod_length", "m", Number(0.05, 100.0), "2.0", "L, from the UAV's centre of mass to the payload."),
+    key("inertia", "kg m²", Each(3, 1e-6, 1e3), "[0.03, 0.03, 0.05]", "J about the body axes."),
+    key("gravity", "m/s²", Number(0.1, 30.0), "9.81", "g."),
+];
+
+const CHANNEL: &[Key] = &[
+    key("noise", "the channel's", Number(0.0, 100.0), "0.0", "Standard deviation per sample and axis, white."),
+    key("bias", "the channel's", Each(3, -100.0, 100.0), "[0.0, 0.0, 0.0]", "Constant error."),
+    key("quantum", "the channel's", Number(0.0, 100.0), "0.0", "Step of the reading."),
+    key("jitter_s", "s", Other("0 to one control period"), "0.0", "Largest age of a reading."),
+    key("freeze", "s", Other("{ at_s, for_s }, 0 to 100000 each"), "(never)", "The reading stands still."),
+    key("drop_out", "s", Other("{ at_s, for_s }, 0 to 100000 each"), "(never)", "The driver gives zeros."),
+    key("nan", "s", Other("{ at_s, for_s }, 0 to 100000 each"), "(never)", "The driver gives NaN."),
+];
+
+/// All tables of a scenario file, in the order of the page.
+pub const SECTIONS: &[Section] = &[
+    Section {
+        table: "",
+        about: "The flight.",
+        least: "",
+        keys: &[
+            key("title", "", Other("text"), "\"\"", "A caption."),
+            key(
+                "figure",
+                "",
+                Other("text"),
+                "(none)",
+                "The paper's figure and panel that the flight belongs to, as \"3a\".",
+            ),
+            key("duration_s", "s", Number(0.01, 1e5), "10.0", "Length of the flight."),
+            key("substeps", "", Whole(1, 1000), "4", "Runge-Kutta steps of the plant in one control period."),
+            key(
+                "log_period_s",
+                "s",
+                Number(1e-4, 10.0),
+                "0.01",
+                "Period of the log, to the flight's length; metrics see every sample.",
+            ),
+            key(
+                "steady_from_s",
+                "s",
+                Number(0.0, 10.0),
+                "(never)",
+                "From here to the end steady errors are measured.",
+            ),
+            key("seed", "", Whole(0, 1 << 53), "0", "Of all random numbers."),
+            key("vehicle", "", Other("table"), "(the paper's)", "What flies."),
+            key("controller", "", Other("table"), "(the paper's)", "What steers it."),
+            key("path", "", Other("table"), "(the paper's circle)", "What the law \"follow\" follows."),
+            key("reference", "", Other("table"), "(the paper's)", "What the law \"track\" tracks."),
+            key(
+                "initial",
+                "",
+                Other("table, or \"steady\""),
+                "(Fig. 3's)",
+                "The state at the start; \"steady\": on the course, as if always there.",
+            ),
+            key("obstacle", "", Other("table"), "(none)", "Fig. 2's: stops the vehicle."),
+            key("environment", "", Other("table"), "(still)", "Forces, air, another payload."),
+            key("sensors", "", Other("table"), "(ideal)", "What the controller sees of the state."),
+            key("actuators", "", Other("table"), "(ideal)", "What becomes of its commands."),
+            key("timing", "", Other("table"), "(regular)", "The control loop's clock."),
+            key(
+                "limits",
+                "",
+                Other("table"),
+                "(by the vehicle)",
+                "What the vehicle may be asked for, by `check` and `run`.",
+            ),
+        ],
+    },
+    Section {
+        table: "vehicle",
+        about: "What flies; the law is told the same unless `controller.vehicle` says otherwise.",
+        least: "",
+        keys: MASSES,
+    },
+    Section {
+        table: "controller",
+        about: "The law and what it knows.",
+        least: "",
+        keys: &[
+            key(
+                "law",
+                "",
+                Word(&["follow", "track"]),
+                "\"follow\"",
+                "Path following, or trajectory tracking; \"track\" if there is a reference.",
+            ),
+            key("rate_hz", "Hz", Number(5.0, 10_000.0), "1000.0", "Control rate."),
+            key(
+                "look_ahead",
+                "",
+                Word(&["true", "false"]),
+                "true",
+                "Evaluate the law for the middle of the coming hold.",
+            ),
+            key(
+                "poles",
+                "1/s",
+                Other("4 rows of 6, 6, 5, 2 (tracking 6, 6, 6, 2)"),
+                "(Fig. 3's)",
+                "A row an output; a pair is [re, im].",
+            ),
+            key(
+                "k",
+                "1/sʲ",
+                Other("4 rows of 6, 6, 5, 2 (tracking 6, 6, 6, 2)"),
+                "(by poles)",
+                "Gains in place of poles, low order first.",
+            ),
+            key(
+                "k_integral",
+                "1/sʲ",
+                Other("3 numbers from 0 to what is stable"),
+                "[0.0, 0.0, 0.0]",
+                "Integral action (15); path following only.",
+            ),
+            key("zeta", "m/s²⁺ᵏ", Each(4, -1e4, 1e4), "(0, or the steady motion's)", "ζ at the start."),
+            key(
+                "vehicle",
+                "",
+                Other("table as `vehicle`"),
+                "(what flies)",
+                "What the law is told, where it differs.",
+            ),
+            key("latency_s", "s", Number(0.0, 0.5), "0.0", "Latency that the law knows of."),
+            key("rotor_lag_s", "s", Number(0.0, 0.5), "0.0", "Rotor lag that the law knows of."),
+            key("observer", "", Other("table"), "(off)", "Disturbance observers."),
+            key("limits", "", Other("table"), "(none)", "On what the law commands."),
+        ],
+    },
+    Section {
+        table: "controller.observer",
+        about: "Bandwidths of the disturbance observers; 0 is off.",
+        least: "",
+        keys: &[
+            key("payload", "rad/s", Number(0.0, 100.0), "0.0", "Of the force on the payload."),
+            key("rod", "rad/s", Number(0.0, 100.0), "0.0", "Of the force across the rod."),
+            key("torque", "rad/s", Number(0.0, 100.0), "0.0", "Of the torque on the UAV."),
+        ],
+    },
+    Section {
+        table: "controller.limits",
+        about: "Limits of the law's commands.",
+        least: "[controller.limits]\nthrust = [0.0, 100.0]\ntorque = [1.0, 1.0, 1.0]\n",
+        keys: &[
+            key("thrust", "N", Other("[least, most], 0 to 1000000"), "", "Of the thrust."),
+            key("torque", "N m", Each(3, 0.0, 1e6), "", "Of the torque about each body axis, either way."),
+        ],
+    },
+    Section {
+        table: "path",
+        about: "A closed curve. `kind` is \"circle\", \"ellipse\", \"bent\", \"superellipse\", \"tilted\", \"fourier\" or \"implicit\"; these keys are of all kinds.",
+        least: "[path]\nkind = \"circle\"\nradius = 5.0\np3 = -10.0\nspeed = 1.0\n",
+        keys: &[KIND, SPEED, YAW, CONSTANTS],
+    },
+    Section {
+        table: "path, kind = \"circle\"",
+        about: "The paper's horizontal circle about n3 (16).",
+        least: "[path]\nkind = \"circle\"\nradius = 5.0\np3 = -10.0\nspeed = 1.0\n",
+        keys: &[
+            key("radius", "m", Number(0.01, 1e5), "", "d1."),
+            key("p3", "m", Number(-1e5, 1e5), "", "d2; negative is above the origin."),
+        ],
+    },
+    Section {
+        table: "path, kind = \"ellipse\"",
+        about: "(p1/a)² + (p2/b)² = 1 on p3 = c0 + c1 p1; yaw along the tangent if left out.",
+        least: "[path]\nkind = \"ellipse\"\na = 5.0\nb = 4.0\nc0 = -10.0\nc1 = 0.0\nspeed = 1.0\n",
+        keys: &[A, B, C0, C1],
+    },
+    Section {
+        table: "path, kind = \"bent\"",
+        about: "(p1/a)⁴ + (p2/b)⁴ = 1 on p3 = c0 + ½ sin(p1/2); yaw 0.2 p1 if left out.",
+        least: "[path]\nkind = \"bent\"\na = 5.0\nb = 4.0\nc0 = -10.0\nspeed = 1.0\n",
+        keys: &[
+            key("a", "m", Number(0.01, 1e3), "", "Half width along n1."),
+            key("b", "m", Number(0.01, 1e3), "", "Half width along n2."),
+            C0,
+            key("v0", "m/s", Other("-100 to 100"), "(speed)", "With v1 in place of speed: v_d = v0 + v1 p1/a."),
+            key("v1", "m/s", Other("-100 to 100"), "(speed)", "With v0 in place of speed."),
+        ],
+    },
+    Section {
+        table: "path, kind = \"superellipse\"",
+        about: "(p1/a)ⁿ + (p2/b)ⁿ = 1 on p3 = c0 + c1 p1.",
+        least: "[path]\nkind = \"superellipse\"\na = 5.0\nb = 4.0\nhalf_exponent = 2\nc0 = -10.0\nspeed = 1.0\n",
+        keys: &[A, B, key("half_exponent", "", Whole(1, 10), "", "n/2."), C0, C1],
+    },
+    Section {
+        table: "path, kind = \"tilted\"",
+        about: "An ellipse in any plane, right-handed about its normal.",
+        least: "[path]\nkind = \"tilted\"\ncenter = [0.0, 0.0, -10.0]\nnormal = [0.0, 0.0, 1.0]\nmajor = [1.0, 0.0, 0.0]\na = 5.0\nb = 4.0\nspeed = 1.0\n",
+        keys: &[
+            key("center", "m", Each(3, -1e5, 1e5), "", "In N."),
+            key("normal", "", Other("3 numbers, any length"), "", "Across the plane."),
+            key("major", "", Other("3 numbers, any length"), "", "Direction of the half axis a."),
+            key("a", "m", Number(0.01, 1e5), "", "Half axis along `major`."),
+            key("b", "m", Number(0.01, 1e5), "", "Half axis across it."),
+        ],
+    },
+    Section {
+        table: "path, kind = \"fourier\"",
+        about: "c(σ) = center + Σ cos_k cos kσ + sin_k sin kσ, as `hil-sim fit` writes it; up to 16 harmonics.",
+        least: "[path]\nkind = \"fourier\"\ncenter = [0.0, 0.0, -10.0]\ncos = [[5.0, 0.0, 0.0]]\nsin = [[0.0, 5.0, 0.0]]\nreference = [0.0, 0.0, 1.0]\nspeed = 1.0\n",
+        keys: &[
+            key("center", "m", Other("3 numbers, each -100000 to 100000"), "", "In N."),
+            key("cos", "m", Other("1 to 16 rows of 3"), "", "A row a harmonic."),
+            key("sin", "m", Other("as many rows"), "", "A row a harmonic."),
+            key(
+                "reference",
+                "",
+                Other("3 numbers"),
+                "",
+                "A direction along no tangent, from which normals are counted.",
+            ),
+        ],
+    },
+    Section {
+        table: "path, kind = \"implicit\"",
+        about: "h1 = 0 and h2 = 0 by formulas in x, y, z (m in N, z down): + - * / ^, sqrt exp ln sin cos tanh atan2, pi and constants.",
+        least: "[path]\nkind = \"implicit\"\nh1 = \"x^2 + y^2 - 25\"\nh2 = \"z + 10\"\nspeed = 1.0\n",
+        keys: &[
+            key("h1", "", Other("formula"), "", "First surface."),
+            key("h2", "", Other("formula"), "", "Second surface."),
+        ],
+    },
+    Section {
+        table: "reference",
+        about: "Section V's circle in time, for the law \"track\": (r sin Ωt, r cos Ωt, p3).",
+        least: "[reference]\nkind = \"circle\"\nradius = 5.0\np3 = -10.0\nrate = 0.001\n",
+        keys: &[
+            key("kind", "", Word(&["circle"]), "", "Which course."),
+            key("radius", "m", Number(0.01, 1e5), "", "r."),
+            key("p3", "m", Number(-1e5, 1e5), "", "Negative is above the origin."),
+            key("rate", "rad/s", Other("up to 1000 m/s along the circle"), "", "Ω, positive from n2 to n1."),
+        ],
+    },
+    Section {
+        table: "initial",
+        about: "The state at the start, in the paper's coordinates.",
+        least: "",
+        keys: &[
+            key("position", "m", Each(3, -1e5, 1e5), "[0.0, 9.0, -10.0]", "Of the payload in N."),
+            key("alpha", "rad", Number(-std::f64::consts::PI, std::f64::consts::PI), "0.0", "Rod, about n1."),
+            key("beta", "rad", Number(-1.57, 1.57), "0.0", "Rod, about n2."),
+            key("phi", "rad", Number(-1.57, 1.57), "0.0", "Roll."),
+            key("theta", "rad", Number(-std::f64::consts::PI, std::f64::consts::PI), "0.0", "Pitch."),
+            key("psi", "rad", Number(-std::f64::consts::PI, std::f64::consts::PI), "0.0", "Yaw."),
+            key("velocity", "m/s", Each(3, -1e3, 1e3), "[0.0, 0.0, 0.0]", "Of the payload in N."),
+            key("alpha_dot", "rad/s", Number(-1e3, 1e3), "0.0", "Rate of alpha."),
+            key("beta_dot", "rad/s", Number(-1e3, 1e3), "0.0", "Rate of beta."),
+            key("body_rate", "rad/s", Each(3, -1e3, 1e3), "(by euler_rates)", "ω in body axes."),
+            key(
+                "euler_rates",
+                "rad/s",
+                Each(3, -1e3, 1e3),
+                "[0.0, 0.0, 0.0]",
+                "Rates of phi, theta, psi, in place of body_rate.",
+            ),
+        ],
+    },
+    Section {
+        table: "obstacle",
+        about: "Sets all velocities and tilts to zero and holds the vehicle; then the law starts again from ζ = 0.",
+        least: "[obstacle]\nat_s = 0.0\n",
+        keys: &[
+            key("at_s", "s", Number(0.0, 10.0), "", "When, up to the flight's length."),
+            key("hold_s", "s", Number(0.0, 10.0), "0.0", "How long, up to what is left of the flight."),
+        ],
+    },
+    Section {
+        table: "limits",
+        about: "What a vehicle may be asked for on its path. `check` and `run` refuse a path that asks for more; actuators that give less thrust lower the limit.",
+        least: "",
+        keys: &[
+            key("min_thrust", "N", Other("0 to max_thrust"), "(0.2 of hover)", "Least thrust."),
+            key("max_thrust", "N", Number(0.0, 1e6), "(twice hover)", "Largest thrust."),
+            key("rod_angle_deg", "°", Number(0.0, 90.0), "45.0", "Angle of the rod from straight down."),
+            key("tilt_deg", "°", Number(0.0, 90.0), "45.0", "Angle of the thrust axis from the vertical."),
+            key("body_rate", "rad/s", Number(0.0, 1e3), "4.0", "|ω|."),
+            key("torque", "N m", Number(0.0, 1e6), "(0.034 m of hover's thrust)", "About each body axis."),
+            key(
+                "tension",
+                "",
+                Number(0.0, 1.0),
+                "0.2",
+                "Least tension of the cable, a part of the payload's weight.",
+            ),
+        ],
+    },
+    Section {
+        table: "environment",
+        about: "Forces and torques that the law does not know of.",
+        least: "",
+        keys: &[
+            key("payload_force", "N", Each(3, -1e3, 1e3), "[0.0, 0.0, 0.0]", "On the payload, in N."),
+            key("uav_force", "N", Each(3, -1e3, 1e3), "[0.0, 0.0, 0.0]", "On the UAV, in N."),
+            key("torque", "N m", Each(3, -100.0, 100.0), "[0.0, 0.0, 0.0]", "On the UAV, in body axes."),
+            key("air", "", Other("table"), "(none)", "Air that drags at both bodies."),
+            key("payload_step", "", Other("table"), "(none)", "A payload picked up or dropped in flight."),
+        ],
+    },
+    Section {
+        table: "environment.air",
+        about: "Wind, gusts and drag.",
+        least: "[environment.air]\n",
+        keys: &[
+            key(
+                "wind",
+                "m/s",
+                Each(3, -50.0, 50.0),
+                "[0.0, 0.0, 0.0]",
+                "Mean velocity of the air in N: where it goes.",
+            ),
+            key("gusts", "", Other("table"), "(none)", "Dryden turbulence about the mean."),
+            key("density", "kg/m³", Number(0.0, 2.0), "1.225", "ρ."),
+            key("payload_drag_area", "m²", Number(0.0, 10.0), "0.01", "C_d A of the payload."),
+            key("uav_drag_area", "m²", Number(0.0, 10.0), "0.05", "C_d A of the UAV."),
+        ],
+    },
+    Section {
+        table: "environment.air.gusts",
+        about: "MIL-F-8785C's low-altitude Dryden model.",
+        least: "[environment.air.gusts]\nspeed_at_6m = 5.0\n",
+        keys: &[
+            key("speed_at_6m", "m/s", Number(0.0, 50.0), "", "Mean wind 6 m above ground: the intensity."),
+            key("height", "m", Number(3.0, 300.0), "10.0", "Height above ground."),
+        ],
+    },
+    Section {
+        table: "environment.payload_step",
+        about: "Another payload from a time on.",
+        least: "[environment.payload_step]\nat_s = 5.0\nmass = 1.5\n",
+        keys: &[
+            key("at_s", "s", Number(0.0, 1e5), "", "When."),
+            key("mass", "kg", Number(1e-3, 1e3), "", "Mass from then on; dropped, that of the hook."),
+            key("drag_area", "m²", Number(0.0, 10.0), "(as before)", "C_d A from then on."),
+        ],
+    },
+    Section {
+        table: "sensors.position",
+        about: "Errors of a channel. The same keys for `sensors.velocity` (m/s), `.rod` (rad), `.rod_rate` (1/s), `.attitude` (rad) and `.body_rate` (rad/s).",
+        least: "",
+        keys: CHANNEL,
+    },
+    Section {
+        table: "actuators",
+        about: "What becomes of a command.",
+        least: "",
+        keys: &[
+            key("lag_s", "s", Number(0.0, 0.5), "0.0", "Time constant of thrust and torque."),
+            key("latency_s", "s", Number(0.0, 0.5), "0.0", "From a sample to its command's effect."),
+            key("thrust_scale", "", Number(0.1, 2.0), "1.0", "Part of the commanded thrust that the vehicle gets."),
+            key("thrust_range", "N", Other("[least, most], 0 to 100000"), "(none)", "What the rotors can be told."),
+            key("max_torque", "N m", Each(3, 0.0, 1e5), "(none)", "Largest torque about each body axis."),
+            key("rotors", "", Other("table"), "(ideal)", "Four rotors, each with its limits."),
+            key(
+                "sag",
+                "",
+                Other("{ max_thrust, during = { at_s, for_s } }"),
+                "(none)",
+                "A time with less thrust to be had (N, s): a sagging battery.",
+            ),
+        ],
+    },
+    Section {
+        table: "actuators.rotors",
+        about: "Four rotors on a square.",
+        least: "[actuators.rotors]\nlayout = \"quad-x\"\narm_m = 0.3\ndrag_m = 0.02\nmax_thrust = 15.0\n",
+        keys: &[
+            key(
+                "layout",
+                "",
+                Word(&["quad-x", "quad-plus"]),
+                "",
+                "Front right, rear left, front left, rear right; or right, left, front, rear.",
+            ),
+            key("arm_m", "m", Number(0.01, 10.0), "", "From the centre to a rotor's axis."),
+            key("drag_m", "m", Number(1e-3, 1.0), "", "Drag torque per thrust."),
+            key("max_thrust", "N", Number(0.01, 1e5), "", "Of one rotor; the least is 0."),
+            key(
+                "failure",
+                "",
+                Other("{ rotor = 1 to 4, at_s, effectiveness = 0 to 1 }"),
+                "(none)",
+                "A rotor that gives that part of its thrust from then on.",
+            ),
+        ],
+    },
+    Section {
+        table: "timing",
+        about: "The control loop's clock.",
+        least: "",
+        keys: &[
+            key(
+                "jitter",
+                "",
+                Number(0.0, 0.9),
+                "0.0",
+                "Each period is uniform within this part of the nominal one, either way.",
+            ),
+            key("missed", "", Number(0.0, 0.9), "0.0", "Probability that the controller is not called at a sample."),
+        ],
+    },
+];
+
+/// The page: a table of keys for each table of a scenario file.
+#[must_use]
+pub fn page() -> String {
+    let mut page = String::from(
+        "# Keys of a scenario file\n\nA scenario is a TOML file of one flight. Everything may be left out, and is then the paper's: Fig. 3's flight. A \
+         table that is given needs those of its keys that have no default. This page is what `hil-sim keys` prints.\n",
+    );
+    for Section { table, about, keys, .. } in SECTIONS {
+        let heading = if table.is_empty() { "Before all tables".to_owned() } else { format!("`[{table}]`") };
+        let _ = write!(
+            page,
+            "\n## {heading}\n\n{about}\n\n| key | unit | range | default | meaning |\n|---|---|---|---|---|\n"
+        );
+        for Key { name, unit, values, default, meaning } in *keys {
+            let range = match values {
+                Number(low, high) => format!("{low} to {high}"),
+                Whole(low, high) => format!("{low} to {high}, whole"),
+                Each(count, low, high) => format!("{count} numbers, each {low} to {high}"),
+                Word(words) => words.join(", "),
+                Other(text) => (*text).to_owned(),
+            };
+            let default = match *default {
+                "" => "must be given".to_owned(),
+                text if text.starts_with('(') => text.trim_matches(['(', ')']).to_owned(),
+                text => format!("`{text}`"),
+            };
+            let _ = writeln!(page, "| `{name}` | {unit} | {range} | {default} | {meaning} |");
+        }
+    }
+    page
+}
