@@ -10,6 +10,7 @@ cited in the code's comments is on the page.
 
 import sys
 
+import checks_estimation  # noqa: F401
 import checks_flight  # noqa: F401
 import checks_law  # noqa: F401
 import checks_model  # noqa: F401

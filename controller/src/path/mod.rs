@@ -1,15 +1,15 @@
 //! Paths: curves in space with a speed and a yaw prescribed along them.
 //!
-//! A curve is the common zero of two functions, C = {h1(p) = 0, h2(p) = 0}, and runs along the unit tangent ρ, which is
-//! (∇h1 × ∇h2)/|∇h1 × ∇h2| or its opposite: **a curve states its direction**. The law sees a path only through its outputs (4),
-//! evaluated on the payload's Taylor series, so every derivative that the law needs comes from ordinary series
-//! arithmetic.
+//! A curve is the common zero of two functions, C = {h1(p) = 0, h2(p) = 0}, and runs along the unit
+//! tangent ρ, which is (∇h1 × ∇h2)/|∇h1 × ∇h2| or its opposite: **a curve states its
+//! direction**. The law sees a path only through its outputs (3.3), evaluated on the payload's
+//! Taylor series, so every derivative that the law needs comes from ordinary series arithmetic.
 //!
-//! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`]. A curve of one's own is
-//! a [`Formula`], two lines of ordinary arithmetic; so is a profile.
+//! [`Profiled`] composes a [`Curve`] with a [`SpeedProfile`] and a [`YawProfile`] into a [`Path`].
+//! A curve of one's own is a [`Formula`], two lines of ordinary arithmetic; so is a profile.
 
-/// Repeats a block for each order, which is a constant in it: the compiler unrolls loops over orders only while they are few, and a
-/// coefficient's loop has its bounds then.
+/// Repeats a block for each order, which is a constant in it: the compiler unrolls loops over
+/// orders only while they are few, and a coefficient's loop has its bounds then.
 macro_rules! for_each_order {
     ($order:ident in [$($number:literal)*] $block:block) => {
         $({
@@ -56,7 +56,8 @@ use nalgebra::Vector3;
 
 use crate::law::lift::PositionSeries;
 
-/// The outputs (4) along the payload's series, with the input's contribution to the highest orders left out.
+/// The outputs (3.3) along the payload's series, with the input's contribution to the highest
+/// orders left out.
 #[derive(Clone, Copy, Debug)]
 pub struct Outputs<T> {
     /// h1 and h2, orders 0 to 6. Their unit is the curve's choice (the paper's circle: m² and m).
@@ -90,8 +91,8 @@ impl<T: Real> Outputs<T> {
         }
     }
 
-    /// The vector whose products with ∇h1, ∇h2 and ρ are `products`, and the determinant (∇h1 × ∇h2)·ρ of this system; infinite or NaN
-    /// where that is zero.
+    /// The vector (5.6) whose products with ∇h1, ∇h2 and ρ are `products`, and the determinant (∇h1
+    /// × ∇h2)·ρ of this system; infinite or NaN where that is zero.
     #[inline(never)]
     pub fn solve(&self, products: [T; 3]) -> (Vector3<T>, T) {
         let ([g1, g2], rho) = (&self.gradients, &self.tangent);
@@ -106,16 +107,19 @@ impl<T: Real> Outputs<T> {
 
 /// A curve with speed and yaw along it.
 pub trait Path<T: Real> {
-    /// The outputs (4) along `position`. Takes `&mut self` for paths that remember their nearest point.
+    /// The outputs (3.3) along `position`. Takes `&mut self` for paths that remember their nearest
+    /// point.
     fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
 
-    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m), as far as one control period has time
-    /// for: called once a period when a controller starts, until it is `true`. A curve that knows no nearest point has nothing to do.
+    /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m),
+    /// as far as one control period has time for: called once a period when a controller starts,
+    /// until it is `true`. A curve that knows no nearest point has nothing to do.
     fn search(&mut self, _position: &Vector3<T>) -> bool {
         true
     }
 
-    /// How long the payload is to rest at the stop it is led to, s; infinite: until it is told to go on. `None`: there is no stop.
+    /// How long the payload is to rest at the stop it is led to, s; infinite: until it is told to
+    /// go on. `None`: there is no stop.
     fn dwell(&self) -> Option<T> {
         None
     }
@@ -125,8 +129,8 @@ pub trait Path<T: Real> {
         false
     }
 
-    /// Turns v_d round, or back, at a moment when none is flown. `false` if the path has no speed of its own for the way back: then it
-    /// does nothing, and minus v_d is flown.
+    /// Turns v_d round, or back, at a moment when none is flown. `false` if the path has no speed
+    /// of its own for the way back: then it does nothing, and minus v_d is flown.
     fn set_backward(&mut self, _is_backward: bool) -> bool {
         false
     }

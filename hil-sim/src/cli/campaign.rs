@@ -56,7 +56,8 @@ pub struct CampaignArguments {
 /// The formats of the table.
 #[derive(Args)]
 pub struct Tables {
-    /// Formats of the table: runs.csv is always kept, since it is where an interrupted campaign goes on.
+    /// Formats of the table: runs.csv is always kept, since it is where an interrupted campaign
+    /// goes on.
     #[arg(long, value_enum, value_delimiter = ',', default_value = "csv", value_name = "FORMAT,…")]
     table: Vec<TableFormat>,
 }

@@ -37,7 +37,8 @@ pub fn fly(common: &Common, scenarios: Vec<Scenario>, arithmetic: Arithmetic, un
     Ok(verdict(&outcomes, planned))
 }
 
-/// Complete or not, on standard error and as exit status; 130 after an interrupt, as shells have it.
+/// Complete or not, on standard error and as exit status; 130 after an interrupt, as shells have
+/// it.
 pub fn verdict(outcomes: &[Outcome], planned: usize) -> ExitCode {
     let mut code = ExitCode::SUCCESS;
     for outcome in outcomes {

@@ -20,7 +20,8 @@ pub const TARGET_EXAMPLES: &str = "Examples:
   hil-sim target --listen tcp:127.0.0.1:5760
   hil-sim hil fig3a --connect tcp:127.0.0.1:5760       in another terminal";
 
-/// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json beside it.
+/// Flies on a target, prints both tables, and writes the report with the link's numbers in hil.json
+/// beside it.
 pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
     let scenarios =
         if arguments.files.is_empty() { load::built_in(&[FIGURES])? } else { load::all(&arguments.files)? };

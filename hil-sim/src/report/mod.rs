@@ -130,7 +130,8 @@ pub fn try_file(path: &Path) -> Result<(), ReportError> {
         .map_err(|error| ReportError::File { path: path.to_owned(), error })
 }
 
-/// Makes a folder for reports, and finds out whether files can be written there, before the work that they are for.
+/// Makes a folder for reports, and finds out whether files can be written there, before the work
+/// that they are for.
 ///
 /// # Errors
 /// [`ReportError`] names the folder.

@@ -32,7 +32,7 @@ pub struct Column {
 
 /// A column's values.
 pub enum Values {
-    /// Numbers, to single precision: that of the controller. NaN is for no number.
+    /// Numbers, to single precision: that of the controller. NaN stands for an absent value.
     Numbers(Vec<f32>),
     /// Words, as indices into the list of those that occur.
     Words {

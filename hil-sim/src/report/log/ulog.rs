@@ -6,7 +6,7 @@ use super::table::{Column, Table, Values};
 /// The declaration of a field of PX4's, and the columns that make it.
 type Field = (&'static str, &'static [&'static str]);
 
-/// PX4's topics and fields that are columns of ours: both are NED, SI, and body axes
+/// PX4's topics and fields for columns of this table: both are NED, SI, and body axes
 /// forward-right-down.
 const PX4: [(&str, &[Field]); 3] = [
     (

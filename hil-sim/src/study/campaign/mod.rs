@@ -1,8 +1,9 @@
-//! Campaigns: thousands of flights of the supervised law, each drawn from distributions, to say how often it does what it
-//! should.
+//! Campaigns: thousands of flights of the supervised law, each drawn from distributions, to say how
+//! often it does what it should.
 //!
-//! A flight is a function of the campaign's file, the seed and its own number, so the table is the same on any machine, with any number
-//! of threads, in one go, interrupted and resumed, or in shards.
+//! A flight is a function of the campaign's file, the seed and its own number, so the table is the
+//! same on any machine, with any number of threads, in one go, interrupted and resumed, or in
+//! shards.
 
 mod draw;
 mod file;
@@ -50,8 +51,9 @@ pub enum CampaignError {
 /// Flights between two writes of the table.
 const BLOCK: usize = 64;
 
-/// Flies what is left of the campaign that `identity` names, keeping its table in `folder`, and returns the rows that are done: all of them,
-/// unless `stop` became true. `progress` gets the number of flights done, those found in the folder at once.
+/// Flies what is left of the campaign that `identity` names, keeping its table in `folder`, and
+/// returns the rows that are done: all of them, unless `stop` became true. `progress` gets the
+/// number of flights done, those found in the folder at once.
 ///
 /// # Errors
 /// [`CampaignError`] if a flight cannot be set up, or the table not be kept.

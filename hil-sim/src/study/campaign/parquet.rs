@@ -97,7 +97,7 @@ pub fn encode(rows: &[Row]) -> Result<Vec<u8>> {
                     column.typed::<Int64Type>().write_batch(&values, None, None)?;
                 }
                 Kind::Number => {
-                    // JSON has no number that is not finite: it is null here, too.
+                    // JSON has no NaN and no infinity: null here, too.
                     let there: Vec<i16> = cells.clone().map(|cell| i16::from(cell.is_number())).collect();
                     let values: Vec<f64> = cells.filter_map(Value::as_f64).collect();
                     column.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;

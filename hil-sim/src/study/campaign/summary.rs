@@ -46,8 +46,8 @@ pub struct Summary {
     /// Percentiles over the flights that reached it of the time from which d_C stayed below 25 cm,
     /// s.
     pub reached_s: BTreeMap<&'static str, f64>,
-    /// Share of the variance of d_C's rank that each drawn number explains alone (ε² over 20 bins), largest first; empty below 100
-    /// flights.
+    /// Share of the variance of d_C's rank that each drawn number explains alone (ε² over 20 bins),
+    /// largest first; empty below 100 flights.
     pub sensitivity: Vec<(&'static str, f64)>,
     /// First faults by how many flights had them.
     pub faults: BTreeMap<String, usize>,
