@@ -4,19 +4,18 @@
 //! then follows the curve displaced by
 //!
 //! ```text
-//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0       (13.1)       (13.1)
+//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0       (13.1)
 //! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶                             (13.2)
 //! ```
 //!
-//! (I: the regularized incomplete beta function) (I: the regularized incomplete beta function)
-//! which starts where the payload is and as fast as it is, brakes within T_b and then slides home
-//! within T. S falls from 1 to 0 with six derivatives zero at either end, so the displacement asks
-//! for no step in thrust or torque. Speed along the curve, from rest, and yaw, from where it is, go
-//! to the path's along with the slide. T_b and T are the shortest times for which brake and slide,
-//! each, keep the limits on acceleration, tilt, rod angle and thrust, and the slide the one on
-//! speed; where it is the snap that limits a brake, it takes somewhat longer. The displacement is
-//! rigid, so this works for any path, in metres, and meets no singularity of the curve's functions
-//! on the way.
+//! (I: the regularized incomplete beta function) which starts where the payload is and as fast as
+//! it is, brakes within T_b and then slides home within T. S falls from 1 to 0 with six derivatives
+//! zero at either end, so the displacement asks for no step in thrust or torque. Speed along the
+//! curve, from rest, and yaw, from where it is, go to the path's along with the slide. T_b and T
+//! are the shortest times for which brake and slide, each, keep the limits on acceleration, tilt,
+//! rod angle and thrust, and the slide the one on speed; where it is the snap that limits a brake,
+//! it takes somewhat longer. The displacement is rigid, so this works for any path, in metres, and
+//! meets no singularity of the curve's functions on the way.
 
 use model::{OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;

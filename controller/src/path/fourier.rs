@@ -17,7 +17,7 @@ use crate::path::{Curve, Curved, Harmonics, Located};
 pub const NEWTON_STEPS: usize = 3;
 
 /// The curve c(σ) as a path. With σ(p) the nearest point, r = p − c(σ) and t = c′/|c′|, these
-/// are (15.3) and (15.4): these are (15.3) and (15.4):
+/// are (15.3) and (15.4):
 ///
 /// ```text
 /// n1 = (e − (e·t) t)/|…|,   n2 = t × n1,   h1 = r·n1,   h2 = r·n2,   ρ = t
