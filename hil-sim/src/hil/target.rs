@@ -48,7 +48,8 @@ impl Target {
         Self::connect(emulator.endpoint(), Some(emulator), options)
     }
 
-    /// Speaks over a line that is open already; `endpoint` names it, and is where it is opened again.
+    /// Speaks over a line that is open already; `endpoint` names it, and is where it is opened
+    /// again.
     ///
     /// # Errors
     /// As [`Target::connect`].
@@ -253,7 +254,8 @@ impl Target {
         let first = self.command.is_none();
         let sequence = frame.sequence;
         let question = MavMessage::LOAD_STATE(frame);
-        // The first command is waited for; then what has come by the end of the period is what there is.
+        // The first command is waited for; then what has come by the end of the period is what
+        // there is.
         let (mut fresh, mut telemetry) = (None, None);
         let give_up = if first { begun + self.line.options().patience } else { due + self.period };
         self.line.transmit(&question)?;

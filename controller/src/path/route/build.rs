@@ -102,7 +102,7 @@ pub const SHORTEST_LEG: f64 = 0.05;
 /// rad.
 pub const LARGEST_TURN: f64 = 2.62;
 
-/// Turns below this are none, rad.
+/// Turns below this do not count, rad.
 const LEAST_TURN: f64 = 0.01;
 /// Knots on an arc.
 const ARC: f64 = 6.0;

@@ -81,7 +81,7 @@ fn one(flight: &Shown<'_>, rows: usize) -> Value {
     })
 }
 
-/// A column: one number if it does not change, and nothing if there is none. A gap is filled with
+/// A column: one number if it does not change, and nothing if it is empty. A gap is filled with
 /// what was there before it.
 fn packed(numbers: impl Iterator<Item = f32> + Clone) -> Option<Value> {
     let first = numbers.clone().find(|number| number.is_finite())?;

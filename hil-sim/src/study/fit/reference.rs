@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 pub const LEAST_ANGLE: f64 = 15.0 * PI / 180.0;
 /// Directions tried first: 3° apart.
 const DIRECTIONS: usize = 2500;
-/// An improvement of the cosine by less is none.
+/// An improvement of the cosine by less does not count.
 const SETTLED: f64 = 1e-9;
 
 /// The direction whose least angle to all `tangents` (unit vectors, either sign) is largest, with
