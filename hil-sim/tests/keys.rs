@@ -4,7 +4,8 @@ use hil_sim::describe::keys::{Key, SECTIONS, Section, Values, page};
 use hil_sim::describe::scenario::Scenario;
 use toml::{Table, Value};
 
-/// The table of a section in a scenario, made if it is not there: the part of its name before a comma.
+/// The table of a section in a scenario, made if it is not there: the part of its name before a
+/// comma.
 fn within<'a>(scenario: &'a mut Table, section: &Section) -> &'a mut Table {
     let name = section.table.split(',').next().unwrap_or_default();
     name.split('.').filter(|part| !part.is_empty()).fold(scenario, |table, part| {

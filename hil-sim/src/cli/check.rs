@@ -46,8 +46,8 @@ pub fn check(common: &Common, files: &[PathBuf]) -> Ended {
     Ok(code)
 }
 
-/// Refuses scenarios whose vehicle can't give what their path asks for, as [`check`] does; with `unchecked`, warns of it. Of a curve
-/// that is not closed, smooth and regular it warns.
+/// Refuses scenarios whose vehicle can't give what their path asks for, as [`check`] does; with
+/// `unchecked`, warns of it. Of a curve that is not closed, smooth and regular it warns.
 pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Error>> {
     let mut refused = Vec::new();
     for scenario in scenarios {

@@ -1,7 +1,8 @@
-//! Flights: whatever answers states with commands around a [world](crate::world), and what is kept of it.
+//! Flights: whatever answers states with commands around a [world](crate::world), and what is kept
+//! of it.
 //!
-//! [`flight`] is the one loop. A watcher sees every period of it: [`judge`] keeps a few numbers, as studies of many flights need, and
-//! [`run`] a log and everything that the figures ask for.
+//! [`flight`] is the one loop. A watcher sees every period of it: [`judge`] keeps a few numbers, as
+//! studies of many flights need, and [`run`] a log and everything that the figures ask for.
 
 pub mod batch;
 pub mod deviation;

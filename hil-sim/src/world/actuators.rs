@@ -1,8 +1,10 @@
-//! What becomes of a command on its way to the vehicle: link latency, saturation, rotor lag, wrong thrust scale.
+//! What becomes of a command on its way to the vehicle: link latency, saturation, rotor lag, wrong
+//! thrust scale.
 //!
-//! A command acts `latency_s` after it is given, any fraction of a control period included, and then through the rotors'
-//! first-order lag, u̇ = (u_commanded − u)/τ, solved exactly. Saturation stands before the lag (rotors cannot be told more), the scale
-//! after it (air density, battery, worn propellers): thrust = s · u.
+//! A command acts `latency_s` after it is given, any fraction of a control period included, and
+//! then through the rotors' first-order lag, u̇ = (u_commanded − u)/τ, solved exactly. Saturation
+//! stands before the lag (rotors cannot be told more), the scale after it (air density, battery,
+//! worn propellers): thrust = s · u.
 
 use controller::{Command, Vector3};
 use serde::Deserialize;
@@ -117,7 +119,8 @@ pub struct ActuatorModel {
     given: Command<f64>,
 }
 
-/// Times closer than this are the same, s: far below any period, far above the rounding of a day's seconds.
+/// Times closer than this are the same, s: far below any period, far above the rounding of a day's
+/// seconds.
 const INSTANT: f64 = 1e-9;
 
 impl ActuatorModel {
@@ -134,7 +137,8 @@ impl ActuatorModel {
         self.line.push_back((acts_s, self.actuators.saturate(acts_s, command)));
     }
 
-    /// From `t_s` to when the rotors are next told otherwise, or to `end_s`: the length of that piece.
+    /// From `t_s` to when the rotors are next told otherwise, or to `end_s`: the length of that
+    /// piece.
     pub fn piece(&mut self, t_s: f64, end_s: f64) -> f64 {
         while let Some((at_s, command)) = self.line.front() {
             if *at_s > t_s + INSTANT {

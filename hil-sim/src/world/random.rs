@@ -1,7 +1,7 @@
 //! Random numbers whose values are the same on every machine and in every order of flights.
 //!
-//! Each purpose of each flight has a ChaCha stream of its own, so a gust does not depend on whether a sensor is noisy. Logarithms
-//! come from libm, whose last bit does not depend on the platform.
+//! Each purpose of each flight has a ChaCha stream of its own, so a gust does not depend on whether
+//! a sensor is noisy. Logarithms come from libm, whose last bit does not depend on the platform.
 
 use controller::Vector3;
 use rand_chacha::ChaCha8Rng;

@@ -1,13 +1,15 @@
 //! What the sensors make of the state, channel by channel, and what goes wrong with them.
 //!
-//! Each control period a channel's reading comes about in this order: the true value, at a sample time that jitters
-//! uniformly over `jitter_s` before now (linear between two samples); plus `bias`; plus white noise, normal, independent per
-//! sample and axis; rounded to multiples of `quantum`; then frozen at the last reading, dropped out (zeros, as from a driver with an empty
+//! Each control period a channel's reading comes about in this order: the true value, at a sample
+//! time that jitters uniformly over `jitter_s` before now (linear between two samples); plus
+//! `bias`; plus white noise, normal, independent per sample and axis; rounded to multiples of
+//! `quantum`; then frozen at the last reading, dropped out (zeros, as from a driver with an empty
 //! message), or NaN, in the windows given.
 //!
-//! Vectors are read in their own axes and units. A rod is read with the errors of a rotation vector (rad, in N) and attitude
-//! likewise (rad, in body axes); both stay on their manifolds to second order, then exactly, except for `quantum`, which acts on
-//! the components read. The rod's rate is read orthogonal to the rod read.
+//! Vectors are read in their own axes and units. A rod is read with the errors of a rotation vector
+//! (rad, in N) and attitude likewise (rad, in body axes); both stay on their manifolds to second
+//! order, then exactly, except for `quantum`, which acts on the components read. The rod's rate is
+//! read orthogonal to the rod read.
 
 use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;
@@ -147,7 +149,8 @@ impl Sensors {
         self.channels().into_iter().try_for_each(|(name, channel)| channel.check(&join(at, name), period))
     }
 
-    /// The same standard deviations as the paper's extension was measured with: 2 cm, 3 cm/s, 5 mrad, 20 mrad/s and 10 mrad/s.
+    /// The same standard deviations as the paper's extension was measured with: 2 cm, 3 cm/s, 5
+    /// mrad, 20 mrad/s and 10 mrad/s.
     #[must_use]
     pub fn noisy() -> Self {
         let noise = |noise| Channel { noise, ..Channel::default() };
@@ -247,7 +250,8 @@ fn turn(v: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(1.0, -v.z, v.y, v.z, 1.0, -v.x, -v.y, v.x, 1.0)
 }
 
-/// The columns made orthonormal, the first two alike (Gram and Schmidt prefer one), the third their product.
+/// The columns made orthonormal, the first two alike (Gram and Schmidt prefer one), the third their
+/// product.
 fn orthonormal(r: &Matrix3<f64>) -> Matrix3<f64> {
     let unit = |v: Vector3<f64>| v / v.dot(&v).sqrt();
     let (c1, c2): (Vector3<f64>, Vector3<f64>) = (unit(r.column(0).into()), unit(r.column(1).into()));
