@@ -10,18 +10,22 @@
 //! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
 //! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
 //! the supervisor (`controller::Supervisor`, which has the modes' table) on what there is: a missing state is passed on as
-//! absent; the supervisor coasts, then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming. The tracking law has a
-//! guard of its own instead, and knows OFF, FOLLOW and FAULT alone.
+//! absent; the supervisor coasts, then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
 
-use controller::{Command, Fault, Mode, Request, State};
+use controller::{Command, Fault, Margin, Mode, Request, State};
 use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
 };
 
 use rig::{Output, Rig, SetupError, parameter};
 
+use crate::epoch::Epoch;
+use crate::failsafe::{Failsafe, Loss};
 use crate::report;
 use crate::settings::{Setting, Settings};
+
+/// A state older than this, s, is none to arm on.
+const FRESH_S: f32 = 0.5;
 
 /// What drives the control step, and whether the rotors do as they are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,6 +68,58 @@ pub struct Counters {
     pub worst_cycles: u32,
 }
 
+/// Why it is not armed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ArmRefused {
+    /// The parameters make no controller.
+    Setup(SetupError<f32>),
+    /// There has been no good state just now.
+    NoState,
+    /// The pilot's kill switch is on.
+    Killed,
+    /// This is lost.
+    Lost(Loss),
+}
+
+impl core::fmt::Display for ArmRefused {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Setup(error) => error.fmt(f),
+            Self::NoState => f.write_str("not armed: no good state just now"),
+            Self::Killed => f.write_str("not armed: the kill switch is on"),
+            Self::Lost(Loss::Station) => f.write_str("not armed: ground station lost"),
+            Self::Lost(Loss::Stick) => f.write_str("not armed: stick or radio lost"),
+            Self::Lost(Loss::Battery) => f.write_str("not armed: battery below FS_BAT_PCT"),
+        }
+    }
+}
+
+impl core::error::Error for ArmRefused {}
+
+/// Something that has happened and that the pilot must hear of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Notice {
+    /// Nothing yet.
+    Nothing,
+    /// The pilot's switch has stopped the rotors.
+    Killed,
+    /// Too long without a state: the rotors have stopped.
+    Blind,
+    /// This is lost, and the configured action taken.
+    Lost(Loss),
+}
+
+/// What was wrong with the last control period's state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Absence {
+    /// None came.
+    Missing,
+    /// What came was from another time.
+    Stale,
+    /// It was no state.
+    Bad,
+}
+
 /// The outcome of one control step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
@@ -86,7 +142,18 @@ pub struct Autopilot {
     request: Request,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
-    newest_usec: Option<u64>,
+    epoch: Epoch,
+    /// A state from another time has come since the last control period.
+    stale: bool,
+    /// What the last control period lacked.
+    absence: Option<Absence>,
+    /// Time since the last good state, and in which rotors turned without one, s.
+    since_state_s: f32,
+    blind_s: f32,
+    failsafe: Failsafe,
+    kill: bool,
+    /// The last notice, and how many there have been.
+    notice: (u32, Notice),
     last: Option<Answer>,
     overrun: bool,
     until_telemetry: u32,
@@ -96,14 +163,27 @@ impl Autopilot {
     /// Not armed, with all parameters at their defaults.
     #[must_use]
     pub fn new(boot: Boot) -> Self {
+        Self::with(Settings::default(), boot)
+    }
+
+    /// Not armed, with these `settings`.
+    #[must_use]
+    pub fn with(settings: Settings, boot: Boot) -> Self {
         Self {
-            settings: Settings::default(),
+            settings,
             boot,
             counters: Counters::default(),
             rig: None,
             request: Request::Idle,
             inbox: None,
-            newest_usec: None,
+            epoch: Epoch::default(),
+            stale: false,
+            absence: None,
+            since_state_s: f32::INFINITY,
+            blind_s: 0.0,
+            failsafe: Failsafe::default(),
+            kill: false,
+            notice: (0, Notice::Nothing),
             last: None,
             overrun: false,
             until_telemetry: 0,
@@ -155,13 +235,65 @@ impl Autopilot {
         self.rig.is_some()
     }
 
-    /// Asks for something, now or for after arming. `false` if the law does not know it: tracking only follows.
-    pub fn request(&mut self, request: Request) -> bool {
-        let known = request == Request::Follow || !self.settings.rig().is_on(parameter!("CTL_LAW"));
-        if known {
-            self.request = request;
+    /// Whether it flies, or falls.
+    #[must_use]
+    pub fn is_flying(&self) -> bool {
+        !matches!(self.mode(), Mode::Off | Mode::Idle)
+    }
+
+    /// What the last control period's state lacked.
+    #[must_use]
+    pub fn absence(&self) -> Option<Absence> {
+        self.absence
+    }
+
+    /// The margin for which it holds instead of following, where nothing else keeps it from that.
+    #[must_use]
+    pub fn waits_for(&self) -> Option<Margin> {
+        let Output { mode, fault, warning, .. } = *self.rig.as_ref()?.output();
+        let waits = mode == Mode::Hold && fault.is_none() && self.request == Request::Follow;
+        warning.filter(|_| waits)
+    }
+
+    /// What was asked for last.
+    #[must_use]
+    pub fn requested(&self) -> Request {
+        if self.is_armed() || self.request != Request::Idle { self.request } else { Request::Off }
+    }
+
+    /// How many notices there have been, and the last one.
+    #[must_use]
+    pub fn notice(&self) -> (u32, Notice) {
+        self.notice
+    }
+
+    fn note(&mut self, notice: Notice) {
+        self.notice = (self.notice.0.wrapping_add(1), notice);
+    }
+
+    /// A ground station lives.
+    pub fn hear_station(&mut self) {
+        self.failsafe.hear_station();
+    }
+
+    /// The pilot's stick or radio lives; with its kill switch on, the rotors stop.
+    pub fn hear_stick(&mut self, kill: bool) {
+        self.failsafe.hear_stick();
+        self.kill = kill;
+        if kill && self.is_armed() {
+            self.disarm();
+            self.note(Notice::Killed);
         }
-        known
+    }
+
+    /// The battery has so much left, %.
+    pub fn hear_battery(&mut self, percent: i8) {
+        self.failsafe.hear_battery(percent);
+    }
+
+    /// Asks for something, now or for after arming.
+    pub fn request(&mut self, request: Request) {
+        self.request = request;
     }
 
     /// What the board found out when it started.
@@ -176,15 +308,25 @@ impl Autopilot {
         self.counters
     }
 
-    /// Makes the law of the parameters as they are, and waits for a state to start it with. Armed already, it does nothing.
+    /// Makes the controller of the parameters as they are, to be started by the next good state. Armed already, it does nothing.
     ///
     /// # Errors
-    /// The parameters make no law; it stays disarmed.
-    pub fn arm(&mut self) -> Result<(), SetupError<f32>> {
+    /// Why not; it stays disarmed.
+    pub fn arm(&mut self) -> Result<(), ArmRefused> {
         if !self.is_armed() {
-            self.rig = Some(Rig::new(self.settings.rig())?);
+            if self.kill {
+                return Err(ArmRefused::Killed);
+            }
+            if let Some(loss) = Loss::ALL.into_iter().find(|loss| self.failsafe.is_lost(*loss, &self.settings)) {
+                return Err(ArmRefused::Lost(loss));
+            }
+            if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
+                return Err(ArmRefused::NoState);
+            }
+            self.rig = Some(Rig::new(self.settings.rig()).map_err(ArmRefused::Setup)?);
             self.inbox = None;
-            self.newest_usec = None;
+            self.epoch = Epoch::default();
+            self.blind_s = 0.0;
             self.last = None;
             self.until_telemetry = 0;
         }
@@ -198,19 +340,24 @@ impl Autopilot {
         self.last = None;
     }
 
-    /// A state for the coming control period: flight and real time. A frame that is not newer than the last one is refused.
+    /// A state for the coming control period: flight and real time. One from another time than the last, earlier or seconds later, is refused;
+    /// but for the third in a row that agree on another, which is that of a clock that has restarted.
     pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
-        if self.newest_usec.is_some_and(|newest| frame.time_usec <= newest) {
-            self.counters.refused = self.counters.refused.wrapping_add(1);
-        } else {
-            self.newest_usec = Some(frame.time_usec);
+        if self.epoch.accept(frame.time_usec) {
             self.inbox = Some(frame.clone());
+        } else {
+            self.counters.refused = self.counters.refused.wrapping_add(1);
+            self.stale = true;
         }
     }
 
     /// A control period by the timer: flight and real time.
     pub fn tick(&mut self) -> Answer {
         let frame = self.inbox.take();
+        let period_s = self.period_s();
+        for (loss, wanted) in self.failsafe.advance(period_s, &self.settings).into_iter().flatten() {
+            self.lose(loss, wanted);
+        }
         self.control(frame.as_ref())
     }
 
@@ -269,6 +416,20 @@ impl Autopilot {
         }
     }
 
+    /// Does what is configured for a loss; a landing is not called off for it.
+    fn lose(&mut self, loss: Loss, wanted: Option<Request>) {
+        if !self.is_armed() {
+            return;
+        }
+        self.note(Notice::Lost(loss));
+        if let Some(wanted) = wanted
+            && self.request != Request::Land
+            && self.is_flying()
+        {
+            self.request(wanted);
+        }
+    }
+
     fn out_of_step(&self, frame: &LOAD_STATE_DATA) -> Answer {
         self.nothing(Some(frame), self.standing_faults() | LoadFault::LOAD_FAULT_SEQUENCE)
     }
@@ -292,26 +453,36 @@ impl Autopilot {
         faults.set(LoadFault::LOAD_FAULT_OVERRUN, self.overrun);
         faults.set(LoadFault::LOAD_FAULT_WATCHDOG, self.boot.by_watchdog);
         faults.set(LoadFault::LOAD_FAULT_INTERNAL_CLOCK, self.boot.internal_clock);
-        faults
+        faults | self.failsafe.bits()
     }
 
     fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         let mut faults = self.standing_faults();
         self.overrun = false;
-        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
         let state = frame.filter(|frame| may_start(frame)).map(link::state_of);
         let good = state.as_ref().filter(|state| state.check().is_ok());
-        match frame {
-            None => {
-                self.counters.missed = self.counters.missed.wrapping_add(1);
-                faults |= LoadFault::LOAD_FAULT_NO_STATE;
-            }
-            Some(_) if good.is_none() => {
+        let is_stale = core::mem::take(&mut self.stale);
+        self.absence = match frame {
+            _ if good.is_some() => None,
+            Some(_) => Some(Absence::Bad),
+            None if is_stale => Some(Absence::Stale),
+            None => Some(Absence::Missing),
+        };
+        let period_s = self.period_s();
+        self.since_state_s = if good.is_some() { 0.0 } else { self.since_state_s + period_s };
+        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
+        match self.absence {
+            None => self.counters.steps = self.counters.steps.wrapping_add(1),
+            Some(Absence::Bad) => {
                 self.counters.refused = self.counters.refused.wrapping_add(1);
                 faults |= LoadFault::LOAD_FAULT_BAD_STATE;
             }
-            Some(_) => self.counters.steps = self.counters.steps.wrapping_add(1),
+            Some(_) => {
+                self.counters.missed = self.counters.missed.wrapping_add(1);
+                faults |= LoadFault::LOAD_FAULT_NO_STATE;
+            }
         }
+        faults.set(LoadFault::LOAD_FAULT_STALE_STATE, is_stale);
         if let (Some(frame), Some(state)) = (frame, good) {
             if frame.action == LoadAction::LOAD_ACTION_START {
                 self.request = Request::Follow;
@@ -352,7 +523,18 @@ impl Autopilot {
                 self.disarm();
             }
         }
+        self.end_blindness(mode, period_s);
         answer
+    }
+
+    /// Stops the rotors where they have turned for too long without a state, or in fault.
+    fn end_blindness(&mut self, mode: Mode, period_s: f32) {
+        let is_blind = mode == Mode::Fault || mode == Mode::Idle && self.absence.is_some();
+        self.blind_s = if is_blind { self.blind_s + period_s } else { 0.0 };
+        if self.blind_s > self.settings.get(Setting::BLIND_TIMEOUT) {
+            self.disarm();
+            self.note(Notice::Blind);
+        }
     }
 
     /// Counts a step, and says whether it is one of every `TLM_EVERY`.

@@ -14,10 +14,15 @@
 #![no_std]
 
 mod control;
+mod epoch;
+mod failsafe;
 mod report;
 mod server;
 mod settings;
+mod store;
 
-pub use control::{Answer, Autopilot, Boot, Counters, Drive};
+pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive, Notice};
+pub use failsafe::Loss;
 pub use server::{Next, Server};
 pub use settings::{Setting, Settings, entries};
+pub use store::{Flash, FlashFault, NotKept, RECORD, Store};

@@ -2,10 +2,13 @@
 
 use core::fmt::Write;
 
-use controller::{Channel, Fault, Margin, Mode, Request, State};
+use controller::{Channel, Fault, Margin, Mode, State};
 use link::dialect::{LOAD_TELEMETRY_DATA, LoadFault, LoadMode};
 
 use rig::{LawNumbers, Rig};
+
+use crate::control::{Absence, Notice};
+use crate::failsafe::Loss;
 
 /// As long as a STATUSTEXT can be.
 pub type Text = heapless::String<50>;
@@ -22,17 +25,6 @@ pub fn mode(mode: Mode) -> LoadMode {
         // One that the link has no number for yet flies, but neither joins nor follows.
         _ => LoadMode::LOAD_MODE_HOLD,
     }
-}
-
-/// The request for a mode that can be asked for.
-pub fn request(mode: f32) -> Option<Request> {
-    let wanted = [
-        (LoadMode::LOAD_MODE_IDLE, Request::Idle),
-        (LoadMode::LOAD_MODE_FOLLOW, Request::Follow),
-        (LoadMode::LOAD_MODE_HOLD, Request::Hold),
-        (LoadMode::LOAD_MODE_LAND, Request::Land),
-    ];
-    wanted.into_iter().find(|(number, _)| *number as u32 as f32 == mode).map(|(_, request)| request)
 }
 
 pub fn margin(margin: Margin) -> LoadFault {
@@ -59,9 +51,9 @@ pub fn fault(fault: Fault) -> LoadFault {
     }
 }
 
-/// What to tell the pilot.
-pub fn text(mode: Mode, fault: Option<Fault>) -> Text {
-    let mode = match mode {
+/// What to tell the pilot: the mode, and what keeps it from another. A state's fault that is over is told of where it has led to hold alone.
+pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence: Option<Absence>) -> Text {
+    let name = match mode {
         Mode::Off => "off",
         Mode::Idle => "idle",
         Mode::Join => "joining the path",
@@ -71,10 +63,11 @@ pub fn text(mode: Mode, fault: Option<Fault>) -> Text {
         Mode::Fault => "fault",
         _ => "flying",
     };
-    let fault = match fault {
-        None => "",
-        Some(Fault::NoState) => "no state",
-        Some(Fault::State(channel)) => match channel {
+    let fault = match (fault, absence) {
+        (Some(Fault::State(_) | Fault::NoState), None) if mode == Mode::Idle => "",
+        (Some(Fault::NoState), Some(Absence::Stale)) => "stale states",
+        (Some(Fault::NoState), _) => "no state",
+        (Some(Fault::State(channel)), _) => match channel {
             Channel::Position => "bad position",
             Channel::Velocity => "bad velocity",
             Channel::Rod => "bad rod",
@@ -83,26 +76,46 @@ pub fn text(mode: Mode, fault: Option<Fault>) -> Text {
             Channel::BodyRate => "bad body rate",
             _ => "bad state",
         },
-        Some(Fault::Margin(margin)) => match margin {
-            Margin::RodAngle => "rod too far from vertical",
-            Margin::ThrustAngle => "thrust too far from rod",
-            Margin::Tension => "rod nearly slack",
-            Margin::Thrust => "thrust too small",
-            Margin::Path => "path nearly singular",
-            Margin::Reach => "out of the path's reach",
-            Margin::Yaw => "roll too large for a yaw",
-            _ => "outside its envelope",
-        },
-        Some(Fault::NotFinite) => "law's answer not finite",
-        Some(Fault::NoPath) => "no point of the path found",
-        Some(Fault::PayloadLost) => "payload lost",
-        Some(_) => "not ready",
+        (Some(Fault::Margin(margin)), _) => margin_text(margin),
+        (Some(Fault::NotFinite), _) => "law's answer not finite",
+        (Some(Fault::NoPath), _) => "no point of the path found",
+        (Some(Fault::PayloadLost), _) => "payload lost",
+        (Some(_), _) => "another fault",
+        (None, _) => "",
     };
     let mut text = Text::new();
-    let separator = if fault.is_empty() { "" } else { ": " };
-    // The longest pair fits.
-    let _ = write!(text, "{mode}{separator}{fault}");
+    // The longest of each fits.
+    let _ = match (fault, waits_for) {
+        ("", None) => text.push_str(name).map_err(|_| core::fmt::Error),
+        ("", Some(margin)) => write!(text, "{name}: {}, no follow", margin_text(margin)),
+        _ => write!(text, "{name}: {fault}"),
+    };
     text
+}
+
+fn margin_text(margin: Margin) -> &'static str {
+    match margin {
+        Margin::RodAngle => "rod too far from vertical",
+        Margin::ThrustAngle => "thrust too far from rod",
+        Margin::Tension => "rod nearly slack",
+        Margin::Thrust => "thrust too small",
+        Margin::Path => "path nearly singular",
+        Margin::Reach => "out of the path's reach",
+        Margin::Yaw => "roll too large for a yaw",
+        _ => "outside its envelope",
+    }
+}
+
+/// What has happened, with the setting that says what is done.
+pub fn notice(notice: Notice) -> &'static str {
+    match notice {
+        Notice::Nothing => "",
+        Notice::Killed => "rotors stopped by the kill switch",
+        Notice::Blind => "rotors stopped: no state for FS_BLIND_T",
+        Notice::Lost(Loss::Station) => "ground station lost: FS_GCS_ACT",
+        Notice::Lost(Loss::Stick) => "stick or radio lost: FS_RC_ACT",
+        Notice::Lost(Loss::Battery) => "battery below FS_BAT_PCT: FS_BAT_ACT",
+    }
 }
 
 /// Where the last command of `rig`, made on `state`, came from, with the `integral` as it was before.

@@ -2,7 +2,11 @@
 
 use rig::{Entry, Parameter, Parameters, Refused, Tabled as _};
 
-const OWN: [Entry<f64>; 3] = [
+const ACTIONS: &[&str] = &["nothing", "hold", "land"];
+const CHANNEL: (f64, f64) = (0.0, 18.0);
+const BUTTON: (f64, f64) = (0.0, 32.0);
+
+const OWN: [Entry<f64>; 16] = [
     Entry::real(
         "LINK_DIALECT",
         "dialect",
@@ -19,6 +23,46 @@ const OWN: [Entry<f64>; 3] = [
         "What drives the control step.",
     ),
     Entry::whole("TLM_EVERY", "every", 50.0, (0.0, 1e6), "Steps between two telemetry frames; 0 for none."),
+    Entry::real(
+        "FS_GCS_T",
+        "timeout",
+        "s",
+        5.0,
+        (0.0, 600.0),
+        "A ground station that was heard and is silent for so long is lost; 0: never.",
+    ),
+    Entry::choice("FS_GCS_ACT", "action", ACTIONS, 1, "What to do when the ground station is lost."),
+    Entry::real(
+        "FS_RC_T",
+        "timeout",
+        "s",
+        1.0,
+        (0.0, 600.0),
+        "A stick or radio that was heard and is silent for so long is lost; 0: never.",
+    ),
+    Entry::choice("FS_RC_ACT", "action", ACTIONS, 1, "What to do when the stick or radio is lost."),
+    Entry::whole("FS_BAT_PCT", "least", 15.0, (0.0, 100.0), "The battery is low below this many percent; 0: never."),
+    Entry::choice("FS_BAT_ACT", "action", ACTIONS, 2, "What to do when the battery is low."),
+    Entry::real(
+        "FS_BLIND_T",
+        "timeout",
+        "s",
+        20.0,
+        (1.0, 600.0),
+        "In fault, or idle without a state, the rotors stop after so long.",
+    ),
+    Entry::whole(
+        "RC_MODE_CH",
+        "channel",
+        0.0,
+        CHANNEL,
+        "Channel of the mode switch: land below 1300 us, follow above 1700 us, hold between; 0: none.",
+    ),
+    Entry::whole("RC_KILL_CH", "channel", 0.0, CHANNEL, "Channel that stops the rotors above 1700 us; 0: none."),
+    Entry::whole("RC_BTN_HOLD", "button", 0.0, BUTTON, "Joystick's button for hold; 0: none, here and below."),
+    Entry::whole("RC_BTN_FOLLOW", "button", 0.0, BUTTON, "Joystick's button for follow."),
+    Entry::whole("RC_BTN_LAND", "button", 0.0, BUTTON, "Joystick's button for land."),
+    Entry::whole("RC_BTN_KILL", "button", 0.0, BUTTON, "Joystick's button that stops the rotors."),
 ];
 static TABLE: [Entry; OWN.len()] = rig::narrowed(&OWN);
 
@@ -31,6 +75,40 @@ impl Setting {
     pub const DRIVE: Self = Self(rig::index_of(&OWN, "SYS_SIM"));
     /// `TLM_EVERY`: steps between two telemetry frames.
     pub const TELEMETRY_EVERY: Self = Self(rig::index_of(&OWN, "TLM_EVERY"));
+    /// `FS_GCS_T`: after how long a ground station is lost, s.
+    pub const STATION_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_GCS_T"));
+    /// `FS_GCS_ACT`: what is done then.
+    pub const STATION_ACTION: Self = Self(rig::index_of(&OWN, "FS_GCS_ACT"));
+    /// `FS_RC_T`: after how long a stick or radio is lost, s.
+    pub const STICK_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_RC_T"));
+    /// `FS_RC_ACT`: what is done then.
+    pub const STICK_ACTION: Self = Self(rig::index_of(&OWN, "FS_RC_ACT"));
+    /// `FS_BAT_PCT`: below what a battery is low, %.
+    pub const BATTERY_LEAST: Self = Self(rig::index_of(&OWN, "FS_BAT_PCT"));
+    /// `FS_BAT_ACT`: what is done then.
+    pub const BATTERY_ACTION: Self = Self(rig::index_of(&OWN, "FS_BAT_ACT"));
+    /// `FS_BLIND_T`: after how long without a state the rotors stop, s.
+    pub const BLIND_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_BLIND_T"));
+    /// `RC_MODE_CH`: the radio channel of the mode switch.
+    pub const MODE_CHANNEL: Self = Self(rig::index_of(&OWN, "RC_MODE_CH"));
+    /// `RC_KILL_CH`: the radio channel that stops the rotors.
+    pub const KILL_CHANNEL: Self = Self(rig::index_of(&OWN, "RC_KILL_CH"));
+    /// `RC_BTN_HOLD`: the joystick's button for hold.
+    pub const HOLD_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_HOLD"));
+    /// `RC_BTN_FOLLOW`: for follow.
+    pub const FOLLOW_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_FOLLOW"));
+    /// `RC_BTN_LAND`: for land.
+    pub const LAND_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_LAND"));
+    /// `RC_BTN_KILL`: that stops the rotors.
+    pub const KILL_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_KILL"));
+}
+
+impl Setting {
+    /// Its place among all parameters.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0
+    }
 }
 
 /// A value for each parameter, within its range.

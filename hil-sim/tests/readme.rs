@@ -35,6 +35,7 @@ fn its_costs_are_the_expected_ones() {
         ("bent", "| whole step, bent curve, speed and yaw of position |"),
         ("fourier8", "| whole step, Fourier loop of 8 harmonics |"),
         ("route", "| whole step, route of any length |"),
+        ("flown", "| as a board flies it: circle chosen at run time, limits and four rotors |"),
     ] {
         let shown = format!("{row} {} to {} | {} B |", count(case, "best"), count(case, "worst"), bytes(case));
         assert!(README.contains(&shown), "{shown}");

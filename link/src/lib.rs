@@ -26,6 +26,7 @@ pub use decoder::{Decoder, Rejected};
 pub use generated::slung_load as dialect;
 pub use generated::slung_load::MavMessage;
 
+pub use mavlink_core::Message;
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader};
 
 /// Changes with every change of the dialect: parameter `LINK_DIALECT` is this number, exact as a

@@ -1,58 +1,34 @@
 //! `LIM_*`, `ROT_*`: from what the law asks for to what the rotors are told.
 
-use controller::Place;
-use controller::{Actuation, ActuatorLimits, Command, OutOfRange, Real, RotorParams, Rotors};
+use controller::{Actuation, ActuatorLimits, Command, OutOfRange, Place, Range, Real, RotorParams, Rotors, ranges};
 
 use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::{parameter, run};
 
-const TORQUE: (f64, f64) = (0.0, 1e3);
+const TORQUE: [Range; 3] = ranges::MAX_TORQUE;
+/// Rotors push one way only.
+const MIN_THRUST: Range = Range::new("min_thrust", 0.0, ranges::MIN_THRUST.max, ranges::MIN_THRUST.default);
 
 pub(crate) const ENTRIES: &[Entry<f64>] = &[
-    Entry::real(
+    Entry::of(
         "LIM_T_MIN",
-        "min_thrust",
+        MIN_THRUST,
         "N",
-        0.0,
-        (0.0, 1e4),
         "Least thrust that the law may ask for in flight. Roll and pitch may need more or less of it.",
     ),
-    Entry::real("LIM_T_MAX", "max_thrust", "N", 60.0, (0.1, 1e4), "Largest thrust; likewise."),
-    Entry::real("LIM_TAU_1", "max_torque[0]", "N.m", 3.0, TORQUE, "Largest torque about b1, either way."),
-    Entry::real("LIM_TAU_2", "max_torque[1]", "N.m", 3.0, TORQUE, "Largest torque about b2, either way."),
-    Entry::real("LIM_TAU_3", "max_torque[2]", "N.m", 1.0, TORQUE, "Largest torque about b3, either way."),
-    Entry::real(
-        "ROT_ARM",
-        "arm",
-        "m",
-        0.25,
-        (0.01, 10.0),
-        "A rotor's distance from the axes b1 and b2 (X configuration).",
-    ),
-    Entry::real(
-        "ROT_KT",
-        "thrust_coefficient",
-        "N/(rad/s)^2",
-        2e-5,
-        (1e-10, 1.0),
-        "A rotor's thrust over its speed squared.",
-    ),
-    Entry::real(
-        "ROT_KQ",
-        "torque_coefficient",
-        "N.m/(rad/s)^2",
-        4e-7,
-        (1e-12, 1.0),
-        "A rotor's drag torque over its speed squared.",
-    ),
-    Entry::real("ROT_W_MIN", "min_speed", "rad/s", 100.0, (0.0, 1e5), "Least speed of an armed rotor."),
-    Entry::real(
+    Entry::of("LIM_T_MAX", ranges::MAX_THRUST, "N", "Largest thrust; likewise."),
+    Entry::of("LIM_TAU_1", TORQUE[0], "N.m", "Largest torque about b1, either way."),
+    Entry::of("LIM_TAU_2", TORQUE[1], "N.m", "Largest torque about b2, either way."),
+    Entry::of("LIM_TAU_3", TORQUE[2], "N.m", "Largest torque about b3, either way."),
+    Entry::of("ROT_ARM", ranges::ROTOR_ARM, "m", "A rotor's distance from the axes b1 and b2 (X configuration)."),
+    Entry::of("ROT_KT", ranges::THRUST_COEFFICIENT, "N/(rad/s)^2", "A rotor's thrust over its speed squared."),
+    Entry::of("ROT_KQ", ranges::TORQUE_COEFFICIENT, "N.m/(rad/s)^2", "A rotor's drag torque over its speed squared."),
+    Entry::of("ROT_W_MIN", ranges::MIN_SPEED, "rad/s", "Least speed of an armed rotor."),
+    Entry::of(
         "ROT_W_MAX",
-        "max_speed",
+        ranges::MAX_SPEED,
         "rad/s",
-        1100.0,
-        (1.0, 1e5),
         "A rotor's speed at full command; at most 0.9 of it may be the least.",
     ),
 ];
@@ -76,7 +52,7 @@ impl<T: Real> Actuators<T> {
             max_thrust: parameters.get(parameter!("LIM_T_MAX")),
             max_torque: parameters.run(run!("LIM_TAU_1" to "LIM_TAU_3")),
         };
-        limits.check().map_err(parameters.naming("LIM_"))?;
+        limits.check().map_err(parameters.naming(&["LIM_"]))?;
         let rotor = RotorParams {
             thrust_coefficient: parameters.get(parameter!("ROT_KT")),
             torque_coefficient: parameters.get(parameter!("ROT_KQ")),
@@ -88,18 +64,14 @@ impl<T: Real> Actuators<T> {
         // The order of most autopilots: front right, rear left, front left, rear right.
         let places =
             [place(arm, arm, true), place(-arm, -arm, true), place(arm, -arm, false), place(-arm, arm, false)];
-        let rotors = Rotors::new(rotor, &places).map_err(parameters.naming("ROT_"))?;
+        let rotors = Rotors::new(rotor, &places).map_err(parameters.naming(&["ROT_"]))?;
         Ok(Self { limits, rotors, per_max_speed: T::one() / rotor.max_speed })
     }
 
-    // Mostly what is applied is what was asked for, and there is nothing to find out. After a
-    // take-over it differs without being limited.
+    /// Whether `wanted`, of which `applied` came, is more than can be given. Mostly the two are equal, and there is nothing to find
+    /// out; after a take-over they differ without a limit.
     pub(crate) fn limit(&self, wanted: &Command<T>, applied: &Command<T>) -> bool {
         wanted != applied && self.apply(wanted) != *wanted
-    }
-
-    pub(crate) fn limits(&self) -> ActuatorLimits<T> {
-        self.limits
     }
 
     /// Thrust, and torque about b1, b2 and b3, as shares of what all rotors together could give of

@@ -3,13 +3,12 @@
 //! A new curve is a shape here: its name, the parameters that its numbers come from, and how it is made of them. Scenario files, the line
 //! to a target and the reference page of parameters have it from here.
 
-use controller::PositionSeries;
-use controller::{Analytic, Circle, OutOfRange, Real, Series, Vector3};
 use controller::{
-    Bent, Curve, Curved, Ellipse, Formula, FourierPath, Harmonics, Implicit, Located, Superellipse, Tilted,
+    Analytic, Bent, Circle, Curve, Curved, Ellipse, Formula, FourierPath, Harmonics, Implicit, Located, OutOfRange,
+    PositionSeries, Real, Series, Superellipse, Tilted, Vector3, ranges,
 };
 
-use crate::entry::{Entry, Name};
+use crate::entry::{Entry, Kind, Name};
 use crate::parameters::Parameters;
 use crate::table::{Parameter, Run, concatenated};
 use crate::{parameter, run};
@@ -17,8 +16,8 @@ use crate::{parameter, run};
 /// Harmonics of a Fourier curve that has its numbers from parameters.
 pub const HARMONICS: usize = 8;
 
-const FAR: (f64, f64) = (-1e5, 1e5);
-const AXIS: (f64, f64) = (0.01, 1e5);
+/// Of every component of a centre, a direction or a Fourier coefficient.
+const FAR: (f64, f64) = (ranges::COORDINATE.min, ranges::COORDINATE.max);
 const AMPLITUDES: usize = 3 * HARMONICS;
 
 /// Three components `<name>_1` to `<name>_3`.
@@ -54,13 +53,26 @@ const fn amplitudes(name: &str, field: &'static str, axis: usize, text: &'static
 pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<65>(&[
     &[
         Entry::choice("PATH_KIND", "kind", Shape::NAMES, 0, "The curve."),
-        Entry::real("PATH_RADIUS", "radius", "m", 5.0, AXIS, "Circle, of a path or of the tracking law: radius."),
-        Entry::real("PATH_P3", "p3", "m", -10.0, FAR, "Circle: p3; negative is above the origin."),
-        Entry::real("PATH_A", "a", "m", 5.0, AXIS, "Half axis along n1; of a tilted ellipse along its major axis."),
-        Entry::real("PATH_B", "b", "m", 4.0, AXIS, "Half axis along n2; of a tilted ellipse across its major axis."),
-        Entry::real("PATH_C0", "c0", "m", -10.0, FAR, "Height c0 at p1 = 0."),
-        Entry::real("PATH_C1", "c1", "", 0.0, (-100.0, 100.0), "Slope c1 along n1."),
-        Entry::whole("PATH_EXP2", "half_exponent", 2.0, (1.0, 10.0), "Superellipse: half of its exponent."),
+        Entry::of("PATH_RADIUS", ranges::RADIUS, "m", "Circle, of a path or of the tracking law: radius."),
+        Entry::of("PATH_P3", ranges::P3, "m", "Circle: p3; negative is above the origin."),
+        Entry::of(
+            "PATH_A",
+            ranges::HALF_AXIS_A,
+            "m",
+            "Half axis along n1; of a tilted ellipse along its major axis.",
+        ),
+        Entry::of(
+            "PATH_B",
+            ranges::HALF_AXIS_B,
+            "m",
+            "Half axis along n2; of a tilted ellipse across its major axis.",
+        ),
+        Entry::of("PATH_C0", ranges::HEIGHT, "m", "Height c0 at p1 = 0."),
+        Entry::of("PATH_C1", ranges::SLOPE, "", "Slope c1 along n1."),
+        Entry {
+            kind: Kind::Whole,
+            ..Entry::of("PATH_EXP2", ranges::HALF_EXPONENT, "", "Superellipse: half of its exponent.")
+        },
     ],
     &vector("PATH_CTR", "center", "m", [0.0, 0.0, -10.0], "Tilted, Fourier: the centre's component."),
     &vector("PATH_NRM", "normal", "", [0.0, 0.0, 1.0], "Tilted: component of the normal, of any length."),
@@ -223,7 +235,7 @@ impl<T: Real, F, const K: usize> AnyCurve<T, F, K> {
     /// # Errors
     /// What the curve refuses, by the parameter's name where it is one parameter's value.
     pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
-        Self::of(parameters).map_err(parameters.naming("PATH_"))
+        Self::of(parameters).map_err(parameters.naming(&["PATH_"]))
     }
 
     fn of(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
@@ -286,7 +298,7 @@ macro_rules! each {
 impl<T: Real, F: Implicit<T>, const K: usize> Curve<T> for AnyCurve<T, F, K> {
     #[inline]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
-        each!(self, curve => curve.locate(position))
+        each!(self, curve => locate(curve, position))
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
@@ -296,6 +308,21 @@ impl<T: Real, F: Implicit<T>, const K: usize> Curve<T> for AnyCurve<T, F, K> {
 
 impl<T: Real, F: Implicit<T>, const K: usize> Curved<T> for AnyCurve<T, F, K> {
     fn turning(&self, position: &PositionSeries<T>, located: &Located<T>) -> [Series<T, 6>; 3] {
-        each!(self, curve => curve.turning(position, located))
+        each!(self, curve => turning(curve, position, located))
     }
+}
+
+// Out of line, each curve has a stack of its own, and all together need no more than the largest.
+#[inline(never)]
+fn locate<T: Real, C: Curve<T>>(curve: &mut C, position: &PositionSeries<T>) -> Located<T> {
+    curve.locate(position)
+}
+
+#[inline(never)]
+fn turning<T: Real, C: Curved<T>>(
+    curve: &C,
+    position: &PositionSeries<T>,
+    located: &Located<T>,
+) -> [Series<T, 6>; 3] {
+    curve.turning(position, located)
 }

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use controller::Range;
+
 use crate::table::Tabled;
 
 /// A parameter's name, at most 16 characters, as MAVLink has them. It is made at compile time, also
@@ -115,6 +117,12 @@ impl Entry<f64> {
         let (min, max) = range;
         assert!(min <= default && default <= max, "a default outside its range");
         Self { name: Name::new(name), field, unit, kind: Kind::Real, default, min, max, text }
+    }
+
+    /// A number that the controller checks against `range`, with its default.
+    pub const fn of(name: &str, range: Range, unit: &'static str, text: &'static str) -> Self {
+        let Range { field, min, max, default } = range;
+        Self::real(name, field, unit, default, (min, max), text)
     }
 
     /// A whole number within `range`.

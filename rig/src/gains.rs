@@ -44,20 +44,26 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<23>(&[
     ],
 ]);
 
-pub(crate) fn gains<T: Real>(parameters: &Parameters<T>) -> Gains<T> {
-    Gains {
-        k1: parameters.run(run!("K1_0" to "K1_5")),
-        k2: parameters.run(run!("K2_0" to "K2_5")),
-        k3: parameters.run(run!("K3_0" to "K3_4")),
-        k4: parameters.run(run!("K4_0" to "K4_1")),
-        integral: parameters.run(run!("KI_1" to "KI_3")),
+impl<T: Real> Parameters<T> {
+    /// The path-following law's gains.
+    #[must_use]
+    pub fn gains(&self) -> Gains<T> {
+        Gains {
+            k1: self.run(run!("K1_0" to "K1_5")),
+            k2: self.run(run!("K2_0" to "K2_5")),
+            k3: self.run(run!("K3_0" to "K3_4")),
+            k4: self.run(run!("K4_0" to "K4_1")),
+            integral: self.run(run!("KI_1" to "KI_3")),
+        }
     }
-}
 
-pub(crate) fn track_gains<T: Real>(parameters: &Parameters<T>) -> TrackGains<T> {
-    TrackGains {
-        position: [run!("K1_0" to "K1_5"), run!("K2_0" to "K2_5"), run!("K3_0" to "K3_5")]
-            .map(|run| parameters.run(run)),
-        yaw: parameters.run(run!("K4_0" to "K4_1")),
+    /// The tracking law's gains.
+    #[must_use]
+    pub fn track_gains(&self) -> TrackGains<T> {
+        TrackGains {
+            position: [run!("K1_0" to "K1_5"), run!("K2_0" to "K2_5"), run!("K3_0" to "K3_5")]
+                .map(|run| self.run(run)),
+            yaw: self.run(run!("K4_0" to "K4_1")),
+        }
     }
 }

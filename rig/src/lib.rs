@@ -24,7 +24,6 @@ mod rig;
 mod setpoint;
 mod table;
 mod timing;
-mod track;
 mod vehicle;
 
 pub use actuators::Actuators;

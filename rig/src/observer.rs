@@ -1,53 +1,46 @@
 //! `OBS_*`: the disturbance observers.
 
-use controller::{ObserverParams, Real};
+use controller::{ObserverParams, Real, ranges};
 
 use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::run;
 
-const BANDWIDTH: (f64, f64) = (0.0, 100.0);
-const BOUND: (f64, f64) = (0.0, 1e3);
-
 pub(crate) const ENTRIES: &[Entry<f64>] = &[
-    Entry::real(
+    Entry::of(
         "OBS_W_LOAD",
-        "payload_bandwidth",
+        ranges::PAYLOAD_BANDWIDTH,
         "rad/s",
-        4.0,
-        BANDWIDTH,
         "Bandwidth of the observer of the force on the payload; 0 is off.",
     ),
-    Entry::real(
+    Entry::of(
         "OBS_W_ROD",
-        "rod_bandwidth",
+        ranges::ROD_BANDWIDTH,
         "rad/s",
-        4.0,
-        BANDWIDTH,
         "Bandwidth of the observer of the rod's acceleration beyond the model's; 0 is off.",
     ),
-    Entry::real(
+    Entry::of(
         "OBS_W_TAU",
-        "torque_bandwidth",
+        ranges::TORQUE_BANDWIDTH,
         "rad/s",
-        4.0,
-        BANDWIDTH,
         "Bandwidth of the observer of the torque on the UAV; 0 is off.",
     ),
-    Entry::real(
+    Entry::of(
         "OBS_MAX_LOAD",
-        "payload_bound",
+        ranges::PAYLOAD_BOUND,
         "m/s^2",
-        15.0,
-        BOUND,
         "Largest force on the payload that may be found, as an acceleration.",
     ),
-    Entry::real("OBS_MAX_ROD", "rod_bound", "1/s^2", 10.0, BOUND, "Largest acceleration of the rod."),
-    Entry::real("OBS_MAX_TAU", "torque_bound", "N.m", 1.0, BOUND, "Largest torque."),
+    Entry::of("OBS_MAX_ROD", ranges::ROD_BOUND, "1/s^2", "Largest acceleration of the rod that may be found."),
+    Entry::of("OBS_MAX_TAU", ranges::TORQUE_BOUND, "N.m", "Largest torque that may be found."),
 ];
 
-pub(crate) fn observer<T: Real>(parameters: &Parameters<T>) -> ObserverParams<T> {
-    let [payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound] =
-        parameters.run(run!("OBS_W_LOAD" to "OBS_MAX_TAU"));
-    ObserverParams { payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound }
+impl<T: Real> Parameters<T> {
+    /// The disturbance observers.
+    #[must_use]
+    pub fn observer(&self) -> ObserverParams<T> {
+        let [payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound] =
+            self.run(run!("OBS_W_LOAD" to "OBS_MAX_TAU"));
+        ObserverParams { payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound }
+    }
 }

@@ -93,13 +93,15 @@ impl<T: Real> Parameters<T> {
         Parameters(self.0.map(|value| U::lit(value.to_f64())))
     }
 
-    /// Names the parameter, of those whose names begin with `prefix`, whose value the controller
+    /// Names the parameter, of those whose names begin with one of `prefixes`, whose value the controller
     /// refused.
-    pub(crate) fn naming(&self, prefix: &'static str) -> impl Fn(OutOfRange<T>) -> OutOfRange<T> + '_ {
+    pub(crate) fn naming(&self, prefixes: &'static [&'static str]) -> impl Fn(OutOfRange<T>) -> OutOfRange<T> + '_ {
         move |error| {
             let mut entries = f32::table().iter().zip(self.0);
             let refused = entries.find(|(entry, value)| {
-                entry.name.as_str().starts_with(prefix) && entry.field == error.field && *value == error.value
+                prefixes.iter().any(|prefix| entry.name.as_str().starts_with(prefix))
+                    && entry.field == error.field
+                    && *value == error.value
             });
             OutOfRange { field: refused.map_or(error.field, |(entry, _)| entry.name.as_str()), ..error }
         }

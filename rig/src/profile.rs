@@ -1,34 +1,26 @@
 //! `PATH_SPEED` to `PATH_YAW_Y`, `REF_RATE`: how fast a curve is flown and where the nose points.
 
-use controller::PositionSeries;
 use controller::{
-    AlongTangent, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Located, PointingAt, Profiled,
-    ScalarField, SpeedProfile, YawProfile,
+    AlongTangent, Analytic, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Located, OutOfRange,
+    PointingAt, PositionSeries, Profiled, Real, ScalarField, Series, SpeedProfile, YawProfile, ranges,
 };
-use controller::{Analytic, OutOfRange, Real, Series};
 
 use crate::curve::{AnyCurve, NoFormula};
 use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::{parameter, run};
 
-const FAR: (f64, f64) = (-1e5, 1e5);
+/// From 0, which is none.
+const CENTRIPETAL: (f64, f64) = (0.0, ranges::CENTRIPETAL.max);
 
 pub(crate) const ENTRIES: &[Entry<f64>] = &[
-    Entry::real(
-        "PATH_SPEED",
-        "speed",
-        "m/s",
-        1.0,
-        (-100.0, 100.0),
-        "Speed along the curve; negative flies it the other way.",
-    ),
+    Entry::of("PATH_SPEED", ranges::SPEED, "m/s", "Speed along the curve; negative flies it the other way."),
     Entry::real(
         "PATH_ACC",
         "acceleration",
         "m/s^2",
         0.0,
-        (0.0, 100.0),
+        CENTRIPETAL,
         "Largest centripetal acceleration, from 0.01: slower where the curve bends. 0: the same speed everywhere.",
     ),
     Entry::choice(
@@ -38,9 +30,9 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
         0,
         "Yaw along the path.",
     ),
-    Entry::real("PATH_YAW", "yaw", "rad", 0.0, (-100.0, 100.0), "Fixed yaw."),
-    Entry::real("PATH_YAW_X", "x", "m", 0.0, FAR, "p1 of the vertical line that the nose points to."),
-    Entry::real("PATH_YAW_Y", "y", "m", 0.0, FAR, "Its p2."),
+    Entry::of("PATH_YAW", ranges::YAW, "rad", "Fixed yaw."),
+    Entry::of("PATH_YAW_X", ranges::POINTING[0], "m", "p1 of the vertical line that the nose points to."),
+    Entry::of("PATH_YAW_Y", ranges::POINTING[1], "m", "Its p2."),
     Entry::real(
         "REF_RATE",
         "rate",
@@ -101,9 +93,9 @@ impl<T: Real, F> AnySpeed<T, F> {
     pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
         let [speed, acceleration] = parameters.run(run!("PATH_SPEED" to "PATH_ACC"));
         Ok(if acceleration > T::zero() {
-            Self::CurvatureLimited(CurvatureLimited::new(speed, acceleration).map_err(parameters.naming("PATH_"))?)
+            Self::CurvatureLimited(CurvatureLimited::new(speed, acceleration).map_err(parameters.naming(&["PATH_"]))?)
         } else {
-            Self::Constant(ConstantSpeed::new(speed).map_err(parameters.naming("PATH_"))?)
+            Self::Constant(ConstantSpeed::new(speed).map_err(parameters.naming(&["PATH_"]))?)
         })
     }
 }
@@ -117,10 +109,10 @@ impl<T: Real, F> AnyYaw<T, F> {
         let [x, y] = parameters.run(run!("PATH_YAW_X" to "PATH_YAW_Y"));
         Ok(match parameters.whole(parameter!("PATH_YAW_KIND")) {
             0 => Self::Fixed(
-                FixedYaw::new(parameters.get(parameter!("PATH_YAW"))).map_err(parameters.naming("PATH_"))?,
+                FixedYaw::new(parameters.get(parameter!("PATH_YAW"))).map_err(parameters.naming(&["PATH_"]))?,
             ),
             1 => Self::Tangent(AlongTangent),
-            _ => Self::PointingAt(Formula(PointingAt::new(x, y).map_err(parameters.naming("PATH_YAW_"))?)),
+            _ => Self::PointingAt(Formula(PointingAt::new(x, y).map_err(parameters.naming(&["PATH_YAW_"]))?)),
         })
     }
 }
@@ -130,7 +122,7 @@ impl<T: Real, C: Curved<T>, F: ScalarField<T>> SpeedProfile<T, C> for AnySpeed<T
     fn speed(&self, curve: &C, position: &PositionSeries<T>, located: &Located<T>) -> Series<T, 6> {
         match self {
             Self::Constant(speed) => speed.speed(curve, position, located),
-            Self::CurvatureLimited(speed) => speed.speed(curve, position, located),
+            Self::CurvatureLimited(limited) => limit(limited, curve, position, located),
             Self::Formula(speed) => speed.speed(curve, position, located),
         }
     }
@@ -146,4 +138,15 @@ impl<T: Real, F: ScalarField<T>> YawProfile<T> for AnyYaw<T, F> {
             Self::Formula(yaw) => yaw.yaw(position, located),
         }
     }
+}
+
+// Out of line, what it needs of the stack is free again while a curve is located.
+#[inline(never)]
+fn limit<T: Real, C: Curved<T>>(
+    limited: &CurvatureLimited<T>,
+    curve: &C,
+    position: &PositionSeries<T>,
+    located: &Located<T>,
+) -> Series<T, 6> {
+    limited.speed(curve, position, located)
 }

@@ -1,16 +1,16 @@
 //! The controller as it flies: a supervised law of either kind, with limits and rotors.
 
 use controller::{
-    Command, Disturbance, Fault, Follow, Follower, Margin, Margins, Mode, Path, Real, Refused, Request, Solution,
-    State, Supervisor, Vector3, Vehicle, dynamics,
+    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Mode, Path, Real, Reference, Refused,
+    Request, Solution, State, Supervisor, Track, Tracker, Vector3, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
 use crate::error::SetupError;
+use crate::parameter;
 use crate::parameters::Parameters;
 use crate::profile::{AnyPath, path};
-use crate::track::{Tracked, Tracking};
-use crate::{flight, gains, observer, parameter, setpoint, timing, vehicle};
+use crate::setpoint;
 
 /// A controller made of [`Parameters`]: states and requests in, commands and rotor speeds out.
 #[derive(Clone, Debug)]
@@ -21,11 +21,22 @@ pub struct Rig<T: Real, P = AnyPath<T>> {
     time_constants: Vector3<T>,
 }
 
+/// Either law under its supervisor.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)]
 enum Law<T: Real, P> {
     Follow(Supervisor<T, Follow<T, P>, Actuators<T>>),
-    Track(Tracking<T>),
+    /// With the circle's radius (m), p3 (m) and rate (rad/s).
+    Track(Supervisor<T, Track<T>, Actuators<T>>, [T; 3]),
+}
+
+macro_rules! either {
+    ($law:expr, $supervisor:ident => $value:expr) => {
+        match $law {
+            Law::Follow($supervisor) => $value,
+            Law::Track($supervisor, _) => $value,
+        }
+    };
 }
 
 /// What a step answers.
@@ -87,16 +98,14 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// # Errors
     /// As [`new`](Rig::new).
     pub fn on(path: P, parameters: &Parameters<T>) -> Result<Self, SetupError<T>> {
+        let (vehicle, sampling) = (parameters.vehicle()?, parameters.sampling());
         let law = if parameters.is_on(parameter!("CTL_LAW")) {
-            Law::Track(Tracking::new(parameters)?)
+            let tracker = Tracker::new(vehicle, parameters.track_gains(), sampling)?;
+            let [radius, p3, rate] = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
+            Law::Track(supervised(tracker, parameters)?, [radius, p3, rate].map(|number| parameters.get(number)))
         } else {
-            let vehicle = vehicle::vehicle(parameters)?;
-            let follower = Follower::new(vehicle, path, gains::gains(parameters), timing::sampling(parameters))?
-                .with_actuation(Actuators::new(parameters)?)?
-                .with_observer(observer::observer(parameters))?;
-            let envelope = flight::envelope(parameters);
-            let approach = flight::approach(parameters);
-            Law::Follow(Supervisor::new(follower, envelope, approach, flight::policy(parameters))?)
+            let follower = Follower::new(vehicle, path, parameters.gains(), sampling)?;
+            Law::Follow(supervised(follower, parameters)?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
         Ok(Self { law, last, time_constants: setpoint::time_constants(parameters) })
@@ -107,10 +116,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// # Errors
     /// The state or ζ is refused; nothing has changed.
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
-        match &mut self.law {
-            Law::Follow(supervisor) => supervisor.start(state, zeta),
-            Law::Track(tracking) => tracking.start(state, zeta),
-        }
+        either!(&mut self.law, supervisor => supervisor.start(state, zeta))
     }
 
     /// Takes over a flying vehicle from `applied`, without a bump in thrust.
@@ -118,34 +124,33 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// # Errors
     /// The state or command is refused; nothing has changed.
     pub fn take_over(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
-        match &mut self.law {
-            Law::Follow(supervisor) => supervisor.take_over(state, applied),
-            Law::Track(tracking) => tracking.take_over(state, applied),
-        }
+        either!(&mut self.law, supervisor => supervisor.take_over(state, applied))
     }
 
-    /// One control step on whatever state there is. The tracking law takes no request, and has a
-    /// reference, which is at `phase` (rad) now.
+    /// One control step on whatever state there is. The tracking law's reference is at `phase`, rad, now.
     #[inline]
     pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
-        self.last = match &mut self.law {
-            Law::Follow(supervisor) => {
-                let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
-                let actuators = supervisor.sampler().actuation();
-                let limited =
-                    supervisor.solution().is_some_and(|solution| actuators.limit(&solution.command, &command));
-                Output { command, mode, fault, warning, limited }
-            }
-            Law::Track(tracking) => {
-                let Tracked { command, fault } = tracking.step(state, phase);
-                let actuators = tracking.actuators();
-                let limited =
-                    tracking.solution().is_some_and(|solution| actuators.limit(&solution.command, &command));
-                Output { command, mode: tracking.mode(), fault, warning: None, limited }
-            }
-        };
+        if let Law::Track(supervisor, [radius, p3, rate]) = &mut self.law {
+            supervisor.law_mut().set_reference(&Reference::circle(*radius, *p3, *rate, phase));
+        }
+        self.last = either!(&mut self.law, supervisor => {
+            let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
+            let actuators = supervisor.sampler().actuation();
+            let limited = supervisor.solution().is_some_and(|law| actuators.limit(&law.command, &command));
+            Output { command, mode, fault, warning, limited }
+        });
         &self.last
     }
+}
+
+/// A controller with actuators and observers, under its supervisor.
+fn supervised<T: Real, L: controller::Law<T>>(
+    controller: Controller<T, L>,
+    parameters: &Parameters<T>,
+) -> Result<Supervisor<T, L, Actuators<T>>, SetupError<T>> {
+    let controller = controller.with_actuation(Actuators::new(parameters)?)?.with_observer(parameters.observer())?;
+    let supervisor = Supervisor::new(controller, parameters.envelope(), parameters.approach(), parameters.policy());
+    Ok(supervisor.map_err(parameters.naming(&["ENV_", "APP_", "POL_"]))?)
 }
 
 impl<T: Real, P: Path<T>> Rig<T, P> {
@@ -158,10 +163,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// What the vehicle is doing: as of the last step, or a take-over since.
     #[must_use]
     pub fn mode(&self) -> Mode {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.mode(),
-            Law::Track(tracking) => tracking.mode(),
-        }
+        either!(&self.law, supervisor => supervisor.mode())
     }
 
     pub(crate) fn time_constants(&self) -> &Vector3<T> {
@@ -171,14 +173,10 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// The compensator's input, m/s⁶, in the last step, if the law flew.
     #[must_use]
     pub fn u_zeta(&self) -> Option<T> {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.solution().map(|solution| solution.u_zeta),
-            Law::Track(tracking) => tracking.solution().map(|solution| solution.u_zeta),
-        }
+        either!(&self.law, supervisor => supervisor.solution().map(|solution| solution.u_zeta))
     }
 
-    /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
-    /// front left, rear right.
+    /// The last step's command as rotor speeds, shares of the largest: front right, rear left, front left, rear right.
     #[must_use]
     pub fn duties(&self) -> [T; 4] {
         self.actuators().duties(&self.last.command)
@@ -187,19 +185,13 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// What turns commands into thrust and torque.
     #[must_use]
     pub fn actuators(&self) -> &Actuators<T> {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.sampler().actuation(),
-            Law::Track(tracking) => tracking.actuators(),
-        }
+        either!(&self.law, supervisor => supervisor.sampler().actuation())
     }
 
     /// ζ when the next command begins to act.
     #[must_use]
     pub fn zeta(&self) -> &[T; 4] {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.sampler().zeta(),
-            Law::Track(tracking) => tracking.tracker().zeta(),
-        }
+        either!(&self.law, supervisor => supervisor.sampler().zeta())
     }
 
     /// ξ̃ at the next sample; zero for the tracking law, which has none.
@@ -207,26 +199,20 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     pub fn integral(&self) -> [T; 3] {
         match &self.law {
             Law::Follow(supervisor) => *supervisor.law().integral(),
-            Law::Track(_) => [T::zero(); 3],
+            Law::Track(..) => [T::zero(); 3],
         }
     }
 
     /// The disturbances found up to the last sample.
     #[must_use]
     pub fn disturbance(&self) -> &Disturbance<T> {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.disturbance(),
-            Law::Track(tracking) => tracking.tracker().disturbance(),
-        }
+        either!(&self.law, supervisor => supervisor.disturbance())
     }
 
     /// The vehicle as the law knows it.
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle<T> {
-        match &self.law {
-            Law::Follow(supervisor) => supervisor.sampler().vehicle(),
-            Law::Track(tracking) => tracking.vehicle(),
-        }
+        either!(&self.law, supervisor => supervisor.sampler().vehicle())
     }
 
     /// The law's numbers in the last step, if it flew.
@@ -237,15 +223,14 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
                 let xi = &solution.xi;
                 LawNumbers::new(solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4])
             }),
-            Law::Track(tracking) => tracking.solution().map(|solution| {
+            Law::Track(supervisor, _) => supervisor.solution().map(|solution| {
                 let [p1, p2, p3] = &solution.xi.position;
                 LawNumbers::new(solution, [p1, p2, p3, &solution.xi.yaw])
             }),
         }
     }
 
-    /// Where the last step's command came from and what was found, at the `state` that it was made
-    /// on.
+    /// Where the last step's command came from and what was found, at the `state` that it was made on.
     #[must_use]
     pub fn telemetry(&self, state: &State<T>) -> Telemetry<T> {
         let (vehicle, found) = (self.vehicle(), self.disturbance());

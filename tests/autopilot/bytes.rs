@@ -5,7 +5,7 @@ use link::MavMessage;
 use link::dialect::*;
 use proptest::prelude::*;
 
-use crate::station::{Station, driven, frame_of, is_flyable, start};
+use crate::station::{Station, driven, frame_of, is_flyable, see, start};
 
 /// Something that comes over the link.
 #[derive(Clone, Debug)]
@@ -75,7 +75,9 @@ proptest! {
 
     #[test]
     fn nothing_but_flyable_commands_goes_out(events in prop::collection::vec(event(), 1..60), simulate in 0_u8..3) {
-        let mut station = Station::new(driven(simulate.into()));
+        let mut autopilot = driven(simulate.into());
+        see(&mut autopilot);
+        let mut station = Station::new(autopilot);
         station.ask(LoadMode::LOAD_MODE_FOLLOW);
         station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
         let mut sequence = 0;
@@ -128,7 +130,9 @@ fn one_bad_number_at_a_time_leads_nowhere() {
         [0.0, -0.0, f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, f32::MIN_POSITIVE, 1.0, -1.0];
     for index in 0..29 {
         for value in odd {
-            let mut station = Station::new(Autopilot::new(Boot::default()));
+            let mut autopilot = Autopilot::new(Boot::default());
+            see(&mut autopilot);
+            let mut station = Station::new(autopilot);
             station.ask(LoadMode::LOAD_MODE_FOLLOW);
             station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
             for sequence in 1..20 {

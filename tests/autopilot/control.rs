@@ -7,7 +7,7 @@ use link::dialect::*;
 use proptest::prelude::*;
 use rig::{Refused, parameter, run};
 
-use crate::station::{Station, arm_in_flight, armed, driven, fly, frame, is_flyable, set};
+use crate::station::{Station, arm, arm_in_flight, armed, driven, fly, frame, is_flyable, see, set};
 
 #[test]
 fn nothing_turns_unless_armed_and_given_a_state() {
@@ -31,8 +31,8 @@ fn nothing_turns_unless_armed_and_given_a_state() {
 fn asked_before_it_is_armed_it_takes_over_in_flight() {
     for (request, mode) in [(Request::Follow, Mode::Join), (Request::Hold, Mode::Hold), (Request::Land, Mode::Land)] {
         let mut autopilot = driven(0.0);
-        assert!(autopilot.request(request));
-        autopilot.arm().unwrap();
+        autopilot.request(request);
+        arm(&mut autopilot);
         let answer = fly(&mut autopilot, 1);
         assert_eq!(autopilot.mode(), mode);
         assert!(answer.outputs.iter().all(|&duty| duty > 0.3), "{answer:?}");
@@ -61,12 +61,12 @@ fn a_simulated_vehicle_turns_no_rotor() {
 #[test]
 fn on_the_ground_it_idles_until_it_is_asked_to_fly() {
     let mut autopilot = driven(0.0);
-    autopilot.arm().unwrap();
+    arm(&mut autopilot);
     for sequence in 1..1000 {
         fly(&mut autopilot, sequence);
         assert_eq!(autopilot.mode(), Mode::Idle);
     }
-    assert!(autopilot.request(Request::Hold));
+    autopilot.request(Request::Hold);
     fly(&mut autopilot, 1000);
     assert_eq!(autopilot.mode(), Mode::Hold);
 }
@@ -144,24 +144,31 @@ fn six_gains_of_p3(autopilot: &mut Autopilot) {
 }
 
 #[test]
-fn the_tracking_law_has_a_guard_of_its_own() {
+fn the_tracking_law_flies_under_the_same_supervisor() {
     let mut autopilot = driven(0.0);
     set(&mut autopilot, parameter!("CTL_LAW"), 1.0);
     six_gains_of_p3(&mut autopilot);
-    assert!(!autopilot.request(Request::Hold));
     arm_in_flight(&mut autopilot);
     assert_eq!(autopilot.tick().outputs, [0.0; 4]);
-    let parameters = autopilot.settings().clone();
+    let settings = autopilot.settings().clone();
+    let mut is_lawful = true;
     for (sequence, phase) in (1..).zip([0.0, f32::NAN, 0.0, f32::INFINITY, 0.0]) {
         autopilot.receive(&LOAD_STATE_DATA { reference_phase: phase, ..frame(sequence) });
         let answer = autopilot.tick();
-        assert!(is_flyable(&answer, &parameters), "{answer:?}");
+        assert!(is_flyable(&answer, &settings), "{answer:?}");
+        is_lawful &= phase.is_finite();
         let (mode, faults) = (autopilot.mode(), answer.command.faults);
-        let expected = if phase.is_finite() { Mode::Follow } else { Mode::Fault };
-        assert_eq!((mode, faults.contains(LoadFault::LOAD_FAULT_LAW)), (expected, !phase.is_finite()), "{sequence}");
+        // Of a reference that is no number the answer is none, and the vehicle holds until it has been calm.
+        let expected = if is_lawful { Mode::Join } else { Mode::Hold };
+        assert_eq!((mode, faults.contains(LoadFault::LOAD_FAULT_LAW)), (expected, !is_lawful), "{sequence}");
     }
-    assert_eq!(autopilot.counters().fallbacks, 2);
-    assert_eq!(autopilot.tick().command.thrust, 0.9 * 3.0 * 9.81);
+    assert_eq!(autopilot.counters().fallbacks, 1);
+    let asked = [(Request::Hold, Mode::Hold), (Request::Follow, Mode::Join), (Request::Land, Mode::Land)];
+    for (sequence, (request, mode)) in (10..).zip(asked) {
+        autopilot.request(request);
+        fly(&mut autopilot, sequence);
+        assert_eq!(autopilot.mode(), mode);
+    }
 }
 
 #[test]
@@ -169,9 +176,10 @@ fn old_and_bad_states_are_refused_counted_and_named() {
     let mut station = Station::new(armed(0.0));
     fly(&mut station.autopilot, 5);
     station.news();
-    assert!(fly(&mut station.autopilot, 4).command.faults.contains(LoadFault::LOAD_FAULT_NO_STATE));
+    let stale = LoadFault::LOAD_FAULT_NO_STATE | LoadFault::LOAD_FAULT_STALE_STATE;
+    assert!(fly(&mut station.autopilot, 4).command.faults.contains(stale));
     assert_eq!((station.autopilot.mode(), station.autopilot.counters().refused), (Mode::Join, 1));
-    assert_eq!(station.news(), ["joining the path: no state"]);
+    assert_eq!(station.news(), ["joining the path: stale states"]);
 
     type Spoil = fn(&mut LOAD_STATE_DATA);
     let spoilt: [(&str, Spoil); 6] = [
@@ -214,7 +222,8 @@ fn a_watchdog_reset_is_said_at_once_and_in_every_answer() {
     Server::new().greet(&autopilot, &mut |message| said.push(message));
     let texts = said.iter().filter(|message| matches!(message, MavMessage::STATUSTEXT(_))).count();
     assert!(matches!(said[0], MavMessage::HEARTBEAT(_)));
-    assert_eq!(texts, 2);
+    // And that the link is not signed.
+    assert_eq!(texts, 3);
     let faults = autopilot.tick().command.faults;
     assert!(faults.contains(LoadFault::LOAD_FAULT_WATCHDOG | LoadFault::LOAD_FAULT_INTERNAL_CLOCK));
     assert_eq!(autopilot.counters_message().watchdog_resets, 3);
@@ -262,6 +271,7 @@ fn parameters_are_kept_in_range_and_closed_in_flight() {
 fn an_unstable_law_is_not_armed_with() {
     let mut autopilot = Autopilot::new(Boot::default());
     set(&mut autopilot, parameter!("K1_0"), -1.0);
+    see(&mut autopilot);
     let mut station = Station::new(autopilot);
     let (result, said) = station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     assert_eq!((result, said.len()), (MavResult::MAV_RESULT_DENIED as u8, 1), "{said:?}");
@@ -273,6 +283,7 @@ fn a_number_that_the_controller_refuses_is_named_with_its_range() {
     let mut autopilot = Autopilot::new(Boot::default());
     set(&mut autopilot, parameter!("LIM_T_MIN"), 50.0);
     set(&mut autopilot, parameter!("LIM_T_MAX"), 32.0);
+    see(&mut autopilot);
     let (result, said) = Station::new(autopilot).command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8);
     assert_eq!(said, ["LIM_T_MAX = 32 is outside 50 to 1000000"]);

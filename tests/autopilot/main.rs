@@ -3,5 +3,8 @@
 
 mod bytes;
 mod control;
+mod failsafe;
+mod link;
 mod modes;
 mod station;
+mod store;

@@ -7,7 +7,7 @@ use link::dialect::*;
 use rig::parameter;
 use witness::plant::VehicleParameters;
 
-use crate::station::{Station, frame_of, is_flyable, set, start};
+use crate::station::{Station, frame_of, is_flyable, see, set, start};
 
 const PERIOD: f64 = 0.002;
 
@@ -24,7 +24,8 @@ impl Flight {
         Self::of(Autopilot::new(Boot::default()))
     }
 
-    fn of(autopilot: Autopilot) -> Self {
+    fn of(mut autopilot: Autopilot) -> Self {
+        see(&mut autopilot);
         let mut station = Station::new(autopilot);
         station.ask(LoadMode::LOAD_MODE_FOLLOW);
         let (result, said) = station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);

@@ -40,8 +40,20 @@ pub fn armed(simulate: f32) -> Autopilot {
 }
 
 pub fn arm_in_flight(autopilot: &mut Autopilot) {
-    assert!(autopilot.request(Request::Follow));
+    autopilot.request(Request::Follow);
+    arm(autopilot);
+}
+
+/// Armed, with the good state that it takes to be.
+pub fn arm(autopilot: &mut Autopilot) {
+    see(autopilot);
     autopilot.arm().unwrap();
+}
+
+/// Sees a good state.
+pub fn see(autopilot: &mut Autopilot) {
+    autopilot.receive(&frame(0));
+    autopilot.tick();
 }
 
 /// A state, and the step on it.
@@ -102,13 +114,18 @@ impl Station {
         (replies, answers)
     }
 
+    /// What it replies to a message.
+    pub fn say(&mut self, message: &MavMessage) -> Vec<MavMessage> {
+        let bytes = self.encode(message);
+        self.hear(&bytes).0
+    }
+
     /// A command's result, and what was said about it.
     pub fn command(&mut self, command: MavCmd, param1: f32, param2: f32) -> (u8, Vec<String>) {
         let command = command as u16;
         let request =
             MavMessage::COMMAND_LONG(COMMAND_LONG_DATA { param1, param2, command, ..COMMAND_LONG_DATA::DEFAULT });
-        let bytes = self.encode(&request);
-        let (replies, _) = self.hear(&bytes);
+        let replies = self.say(&request);
         let result = replies.iter().find_map(|reply| match reply {
             MavMessage::COMMAND_ACK(ack) if ack.command == command => Some(ack.result),
             _ => None,
@@ -124,12 +141,18 @@ impl Station {
 
     /// What it says unasked.
     pub fn news(&mut self) -> Vec<String> {
+        texts(&self.messages())
+    }
+
+    /// The messages that come unasked.
+    pub fn messages(&mut self) -> Vec<MavMessage> {
         let Self { autopilot, server, .. } = self;
-        texts(&std::iter::from_fn(|| server.news(autopilot)).collect::<Vec<_>>())
+        std::iter::from_fn(|| server.news(autopilot)).collect()
     }
 }
 
-fn texts(messages: &[MavMessage]) -> Vec<String> {
+/// The texts among messages.
+pub fn texts(messages: &[MavMessage]) -> Vec<String> {
     let texts = messages.iter().filter_map(|message| match message {
         MavMessage::STATUSTEXT(text) => Some(link::text_of(&*text.text).to_owned()),
         _ => None,

@@ -80,7 +80,7 @@ def single(number):
 
 def check(dialect, client):
     heartbeat = client.receive("HEARTBEAT")
-    assert heartbeat.type == dialect.MAV_TYPE_QUADROTOR
+    assert heartbeat.type == dialect.MAV_TYPE_GENERIC_MULTIROTOR
     assert not heartbeat.base_mode & dialect.MAV_MODE_FLAG_SAFETY_ARMED
 
     def name_of(message):
@@ -107,7 +107,8 @@ def check(dialect, client):
         return client.receive("COMMAND_ACK", lambda message: message.command == command).result
 
     def arm(on):
-        return command_long(dialect.MAV_CMD_COMPONENT_ARM_DISARM, float(on))
+        # In flight it takes the force code to disarm.
+        return command_long(dialect.MAV_CMD_COMPONENT_ARM_DISARM, float(on), 0.0 if on else 21196.0)
 
     def ask(mode):
         return command_long(dialect.MAV_CMD_DO_SET_MODE, dialect.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, mode)

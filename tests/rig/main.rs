@@ -1,3 +1,4 @@
 //! The controller made of named numbers: its table, and its rotors.
 
 mod rotors;
+mod table;

@@ -36,17 +36,19 @@ impl<T: Real> Superellipse<T> {
     /// # Errors
     /// A number is out of its [range](crate::ranges).
     pub fn new(a: T, b: T, half_exponent: u8, c0: T, c1: T) -> Result<Self, OutOfRange<T>> {
-        let n = 2.0 * f64::from(half_exponent);
+        // By counting: a whole number is turned into one of any scalar without double precision.
+        let half = (0..half_exponent).fold(T::zero(), |count, _| count + T::one());
+        let n = half + half;
         HALF_AXIS_A.check(a)?;
         HALF_AXIS_B.check(b)?;
-        HALF_EXPONENT.check(T::lit(f64::from(half_exponent)))?;
+        HALF_EXPONENT.check(half)?;
         HEIGHT.check(c0)?;
         SLOPE.check(c1)?;
         Ok(Self {
             per_a: T::one() / a,
             per_b: T::one() / b,
             exponent: 2 * i32::from(half_exponent),
-            factors: [T::lit(n), T::lit(n - 1.0)],
+            factors: [n, n - T::one()],
             c0,
             c1,
         })

@@ -61,7 +61,7 @@ impl<T: Real> RotorParams<T> {
         THRUST_COEFFICIENT.check(self.thrust_coefficient)?;
         TORQUE_COEFFICIENT.check(self.torque_coefficient)?;
         MAX_SPEED.check(self.max_speed)?;
-        OutOfRange::check("min_speed", self.min_speed, MIN_SPEED.min, 0.9 * self.max_speed.to_f64())
+        OutOfRange::within("min_speed", self.min_speed, T::lit(MIN_SPEED.min), self.max_speed * T::lit(0.9))
     }
 }
 
@@ -187,7 +187,7 @@ impl<T: Real, const N: usize> Rotors<T, N> {
         let middle = (least_force + largest_force) / (least + largest);
         let room = shares.map(|c| (c * middle - least_force).min(largest_force - c * middle));
         for &room in &room {
-            OutOfRange::check("room for torque", room, 1e-6 * largest_force.to_f64(), f64::MAX)?;
+            OutOfRange::within("room for torque", room, largest_force * T::lit(1e-6), T::lit(f64::from(f32::MAX)))?;
         }
         let bounds = effect.map(|row| row.iter().fold(T::zero(), |sum, &x| sum + x.abs()) * largest_force);
         Ok(Self {

@@ -176,6 +176,8 @@ mod app {
                         // Preempts this task here and now.
                         board::pend_control();
                     }
+                    // No board of these has a memory for parameters yet.
+                    Next::Store(_) => {}
                     Next::Reboot => cortex_m::peripheral::SCB::sys_reset(),
                 }
                 outbox.lock(|outbox| replies.iter().for_each(|reply| outbox.send(reply)));
@@ -215,10 +217,12 @@ mod app {
         let report::SharedResources { mut autopilot, mut server, mut outbox, .. } = cx.shared;
         cx.local.led.toggle();
         let lost = outbox.lock(|outbox| outbox.lost);
-        let (heartbeat, counters) = (&mut autopilot, &mut server)
-            .lock(|autopilot, server| (Server::heartbeat(autopilot), server.counters(autopilot, lost)));
+        let (heartbeat, mode, counters) = (&mut autopilot, &mut server).lock(|autopilot, server| {
+            (Server::heartbeat(autopilot), Server::current_mode(autopilot), server.counters(autopilot, lost))
+        });
         outbox.lock(|outbox| {
             outbox.send(&heartbeat);
+            outbox.send(&mode);
             outbox.send(&counters);
         });
         board::pend_link();

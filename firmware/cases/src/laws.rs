@@ -14,7 +14,7 @@ const PERIOD: f32 = 0.002;
 /// Scale of the spread poles, 1/s: the ones to fly with.
 const BANDWIDTH: f32 = 1.0;
 /// Of h1, h2, h3: far below what those poles allow.
-const INTEGRAL: [f32; 3] = [100.0, 100.0, 10.0];
+pub(crate) const INTEGRAL: [f32; 3] = [100.0, 100.0, 10.0];
 
 /// A supervised path-following law as it flies, observers, guard and limits on, and where its
 /// states are drawn.
@@ -138,7 +138,7 @@ pub(crate) fn zeta(random: &mut Random) -> [f32; 4] {
     [1.0, 1.0, 2.0, 4.0].map(|amplitude| random.around_zero(amplitude))
 }
 
-fn digest_command(command: &Command<f32>, digest: &mut Digest) {
+pub(crate) fn digest_command(command: &Command<f32>, digest: &mut Digest) {
     [command.thrust].iter().chain(&command.torque).for_each(|&number| digest.take(number));
 }
 

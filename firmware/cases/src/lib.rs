@@ -4,11 +4,13 @@
 
 mod alone;
 mod digest;
+mod flown;
 mod laws;
 mod paths;
 mod random;
 
 use alone::Alone;
+use flown::Flown;
 use laws::{Following, Tracking};
 
 pub use digest::Digest;
@@ -50,6 +52,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("track", Tracking::new());
     visitor.visit("law-circle", paths::circle().and_then(|path| Alone::new(path, paths::on_circle)));
     visitor.visit("law-bent", paths::bent().and_then(|path| Alone::new(path, paths::on_bent)));
+    visitor.visit("flown", Flown::new());
 }
 
 /// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after

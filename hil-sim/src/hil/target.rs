@@ -195,6 +195,8 @@ impl Target {
         let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
         let request = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
             param1: f32::from(u8::from(on)),
+            // In flight too.
+            param2: if on { 0.0 } else { 21196.0 },
             command,
             target_system: link::CONTROLLER.0,
             target_component: link::CONTROLLER.1,

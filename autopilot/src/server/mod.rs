@@ -1,15 +1,23 @@
 //! The link side: what each message does, and what is answered.
 
+mod commands;
+mod modes;
+mod parameters;
+mod stick;
+
 use core::fmt::Write;
 
+use controller::{Fault, Margin, Mode};
 use link::dialect::*;
-use link::{MavMessage, Rejected};
-
-use controller::{Fault, Mode, Request};
+use link::{MavMessage, Message as _, Rejected};
 
 use crate::control::{Autopilot, Drive};
 use crate::report;
-use crate::settings::Settings;
+use crate::store::NotKept;
+use stick::Switches;
+
+/// What a ground station says that it is.
+const STATION: u8 = MavType::MAV_TYPE_GCS as u8;
 
 /// What the caller has to do after a message.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +26,8 @@ pub enum Next {
     Nothing,
     /// Lockstep: make the control step of this frame.
     Step(LOAD_STATE_DATA),
+    /// Keep the parameter at this index of [`Settings`] for after a reset.
+    Store(usize),
     /// Reset the controller.
     Reboot,
 }
@@ -26,9 +36,15 @@ pub enum Next {
 #[derive(Clone, Debug)]
 pub struct Server {
     bad_frames: u32,
-    reported: (Mode, Option<Fault>),
+    reported: (Mode, Option<Fault>, Option<Margin>),
+    /// The number of the autopilot's last notice that was said.
+    noticed: u32,
     /// The next parameter of a list that was asked for.
     listing: Option<usize>,
+    /// The next mode likewise.
+    modes: Option<usize>,
+    /// What the pilot's switches said last.
+    switches: Switches,
 }
 
 impl Default for Server {
@@ -41,7 +57,8 @@ impl Server {
     /// Nothing received, nothing reported.
     #[must_use]
     pub const fn new() -> Self {
-        Self { bad_frames: 0, reported: (Mode::Off, None), listing: None }
+        let switches = Switches { mode: None, kill: false };
+        Self { bad_frames: 0, reported: (Mode::Off, None, None), noticed: 0, listing: None, modes: None, switches }
     }
 
     /// What the controller says when it has started: it speaks first, since bytes sent to it before
@@ -53,8 +70,19 @@ impl Server {
             send(status(MavSeverity::MAV_SEVERITY_CRITICAL, "reset by the watchdog"));
         }
         if boot.internal_clock {
-            send(status(MavSeverity::MAV_SEVERITY_WARNING, "no crystal: on the internal oscillator"));
+            send(warning("no crystal: on the internal oscillator"));
         }
+        // MAVLink 2's signing is not supported.
+        send(status(MavSeverity::MAV_SEVERITY_INFO, "link not signed: whoever is on it may command"));
+    }
+
+    /// What to say of a parameter that is not kept for after a reset.
+    #[must_use]
+    pub fn not_kept(why: NotKept) -> MavMessage {
+        warning(match why {
+            NotKept::Full => "set, but not kept: flash full until a reset",
+            NotKept::Flash => "set, but not kept: flash failed",
+        })
     }
 
     /// The sign of life.
@@ -75,7 +103,7 @@ impl Server {
         };
         MavMessage::HEARTBEAT(HEARTBEAT_DATA {
             custom_mode: report::mode(mode) as u32,
-            mavtype: MavType::MAV_TYPE_QUADROTOR as u8,
+            mavtype: MavType::MAV_TYPE_GENERIC_MULTIROTOR as u8,
             autopilot: MavAutopilot::MAV_AUTOPILOT_GENERIC as u8,
             base_mode,
             system_status: system_status as u8,
@@ -99,24 +127,53 @@ impl Server {
         if let Some(change) = self.change(autopilot) {
             return Some(change);
         }
+        if let Some(index) = self.modes {
+            let mode = modes::available(index);
+            self.modes = mode.is_some().then_some(index + 1);
+            if mode.is_some() {
+                return mode;
+            }
+        }
         let index = self.listing?;
-        let answer = value(autopilot, index);
+        let answer = parameters::value(autopilot.settings(), index);
         self.listing = answer.is_some().then_some(index + 1);
         answer
     }
 
     fn change(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
-        let now @ (mode, fault) = (autopilot.mode(), autopilot.fault());
+        let (number, notice) = autopilot.notice();
+        if number != self.noticed {
+            self.noticed = number;
+            return Some(status(MavSeverity::MAV_SEVERITY_CRITICAL, report::notice(notice)));
+        }
+        let now @ (mode, fault, waits_for) = (autopilot.mode(), autopilot.fault(), autopilot.waits_for());
         if now == self.reported {
             return None;
         }
         self.reported = now;
         let severity = match now {
-            (_, None) => MavSeverity::MAV_SEVERITY_INFO,
-            (Mode::Fault, _) | (_, Some(Fault::PayloadLost)) => MavSeverity::MAV_SEVERITY_CRITICAL,
+            (_, None, None) => MavSeverity::MAV_SEVERITY_INFO,
+            (Mode::Fault, ..) | (_, Some(Fault::PayloadLost), _) => MavSeverity::MAV_SEVERITY_CRITICAL,
             _ => MavSeverity::MAV_SEVERITY_WARNING,
         };
-        Some(status(severity, &report::text(mode, fault)))
+        Some(status(severity, &report::text(mode, fault, waits_for, autopilot.absence())))
+    }
+
+    /// The mode that it is in, once a second.
+    #[must_use]
+    pub fn current_mode(autopilot: &Autopilot) -> MavMessage {
+        modes::current(autopilot.mode(), autopilot.requested())
+    }
+
+    /// Does what the pilot's switches have been turned to.
+    fn switch(&mut self, switches: Switches, autopilot: &mut Autopilot) {
+        autopilot.hear_stick(switches.kill);
+        if switches.mode != self.switches.mode
+            && let Some(mode) = switches.mode
+        {
+            autopilot.request(mode);
+        }
+        self.switches = switches;
     }
 
     /// Acts on what the decoder found.
@@ -131,6 +188,9 @@ impl Server {
             self.bad_frames = self.bad_frames.wrapping_add(1);
             return Next::Nothing;
         };
+        if !is_for_us(&message) {
+            return Next::Nothing;
+        }
         match message {
             MavMessage::LOAD_STATE(frame) => {
                 if autopilot.drive() == Drive::Lockstep {
@@ -138,20 +198,28 @@ impl Server {
                 }
                 autopilot.receive(&frame);
             }
-            MavMessage::PARAM_REQUEST_READ(request) => {
-                let index = usize::try_from(request.param_index)
-                    .ok()
-                    .or_else(|| Settings::index(link::text_of(&*request.param_id)));
-                match index.and_then(|index| value(autopilot, index)) {
-                    Some(answer) => send(answer),
-                    None => send(status(MavSeverity::MAV_SEVERITY_WARNING, "no such parameter")),
-                }
-            }
+            MavMessage::PARAM_REQUEST_READ(request) => send(parameters::read(&request, autopilot)),
             MavMessage::PARAM_REQUEST_LIST(_) => self.listing = Some(0),
-            MavMessage::PARAM_SET(request) => set(&request, autopilot, send),
-            MavMessage::COMMAND_LONG(request) => return command(&request, autopilot, send),
+            MavMessage::PARAM_SET(request) => return parameters::set(&request, autopilot, send),
+            MavMessage::COMMAND_LONG(request) => return self.command(&request, autopilot, send),
+            MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
+            MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
+                autopilot.hear_battery(battery.battery_remaining);
+            }
+            MavMessage::MANUAL_CONTROL(message) => {
+                let switches = stick::joystick(&message, autopilot.settings());
+                self.switch(switches, autopilot);
+            }
+            MavMessage::RC_CHANNELS_OVERRIDE(message) => {
+                let switches = stick::radio(&message, autopilot.settings());
+                self.switch(switches, autopilot);
+            }
             MavMessage::TIMESYNC(request) if request.tc1 == 0 => {
-                send(MavMessage::TIMESYNC(TIMESYNC_DATA { tc1: time_ns.cast_signed(), ts1: request.ts1 }));
+                send(MavMessage::TIMESYNC(TIMESYNC_DATA {
+                    tc1: time_ns.cast_signed(),
+                    ts1: request.ts1,
+                    ..TIMESYNC_DATA::DEFAULT
+                }));
             }
             _ => {}
         }
@@ -159,78 +227,19 @@ impl Server {
     }
 }
 
-/// A parameter's current value.
-fn value(autopilot: &Autopilot, index: usize) -> Option<MavMessage> {
-    let (entry, value) = autopilot.settings().at(index)?;
-    Some(MavMessage::PARAM_VALUE(PARAM_VALUE_DATA {
-        param_value: value,
-        param_count: Settings::COUNT as u16,
-        param_index: index as u16,
-        param_id: link::name(entry.name.as_str()),
-        param_type: MavParamType::MAV_PARAM_TYPE_REAL32 as u8,
-    }))
+/// Whether a message that names whom it is for is for this program, or for all.
+fn is_for_us(message: &MavMessage) -> bool {
+    let (system, component) = link::CONTROLLER;
+    let target = match message {
+        MavMessage::MANUAL_CONTROL(stick) => Some(stick.target),
+        message => message.target_system_id(),
+    };
+    target.is_none_or(|target| [0, system].contains(&target))
+        && message.target_component_id().is_none_or(|target| [0, component].contains(&target))
 }
 
-fn set(request: &PARAM_SET_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) {
-    let name = link::text_of(&*request.param_id);
-    let warn = |reason: &str| {
-        let mut text = report::Text::new();
-        // What doesn't fit is cut: the reason comes first.
-        let _ = write!(text, "{reason}: {name}");
-        status(MavSeverity::MAV_SEVERITY_WARNING, &text)
-    };
-    match autopilot.settings_mut() {
-        None => send(warn("not while armed")),
-        Some(settings) => match settings.set_by_name(name, request.param_value) {
-            Ok(_) => {}
-            Err(refused) => send(status(MavSeverity::MAV_SEVERITY_WARNING, &cut(refused))),
-        },
-    }
-    Settings::index(name).and_then(|index| value(autopilot, index)).into_iter().for_each(send);
-}
-
-fn command(request: &COMMAND_LONG_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) -> Next {
-    let mut next = Next::Nothing;
-    let mut denied = |reason: &str| {
-        send(status(MavSeverity::MAV_SEVERITY_WARNING, reason));
-        MavResult::MAV_RESULT_DENIED
-    };
-    let result = if request.command == MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16 {
-        if request.param1 < 0.5 {
-            autopilot.disarm();
-            MavResult::MAV_RESULT_ACCEPTED
-        } else {
-            match autopilot.arm() {
-                Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
-                Err(refused) => denied(&cut(refused)),
-            }
-        }
-    } else if request.command == MavCmd::MAV_CMD_DO_SET_MODE as u16 {
-        match wanted(request) {
-            None => denied("modes to ask for: idle, follow, hold, land"),
-            Some(wanted) if autopilot.request(wanted) => MavResult::MAV_RESULT_ACCEPTED,
-            Some(_) => denied("the tracking law only follows"),
-        }
-    } else if request.command == MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16 {
-        if autopilot.is_armed() {
-            denied("not while armed")
-        } else if request.param1 != 1.0 {
-            denied("only to reboot")
-        } else {
-            next = Next::Reboot;
-            MavResult::MAV_RESULT_ACCEPTED
-        }
-    } else {
-        MavResult::MAV_RESULT_UNSUPPORTED
-    };
-    send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command: request.command, result: result as u8 }));
-    next
-}
-
-/// What `MAV_CMD_DO_SET_MODE` asks for.
-fn wanted(request: &COMMAND_LONG_DATA) -> Option<Request> {
-    let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
-    if is_custom { report::request(request.param2) } else { None }
+fn warning(what: impl core::fmt::Display) -> MavMessage {
+    status(MavSeverity::MAV_SEVERITY_WARNING, &cut(what))
 }
 
 fn status(severity: MavSeverity, text: &str) -> MavMessage {

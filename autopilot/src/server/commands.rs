@@ -1,0 +1,125 @@
+//! COMMAND_LONG: arming, modes, reboot, and messages that are asked for.
+
+use core::fmt::Display;
+
+use controller::{Mode, Request};
+use link::MavMessage;
+use link::dialect::*;
+
+use super::modes::{self, MODES};
+use super::{Next, Server, warning};
+use crate::control::Autopilot;
+use crate::report;
+
+/// The second parameter that has a vehicle disarmed in flight, as all of MAVLink has it.
+const FORCE: f32 = 21196.0;
+
+impl Server {
+    pub(super) fn command(
+        &mut self,
+        request: &COMMAND_LONG_DATA,
+        autopilot: &mut Autopilot,
+        send: &mut impl FnMut(MavMessage),
+    ) -> Next {
+        const ARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
+        const MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+        const REBOOT: u16 = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16;
+        const MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
+        let mut next = Next::Nothing;
+        let mut denied = |reason: &dyn Display| {
+            send(warning(reason));
+            MavResult::MAV_RESULT_DENIED
+        };
+        let result = match request.command {
+            ARM if request.param1 == 1.0 => match autopilot.arm() {
+                Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
+                Err(refused) => denied(&refused),
+            },
+            ARM if request.param1 == 0.0 => {
+                if autopilot.is_flying() && request.param2 != FORCE {
+                    denied(&"in flight: to disarm, param2 has to be 21196")
+                } else {
+                    autopilot.disarm();
+                    MavResult::MAV_RESULT_ACCEPTED
+                }
+            }
+            ARM => denied(&"param1 is 1 to arm, 0 to disarm"),
+            MODE => match wanted(request) {
+                None => denied(&"modes to ask for: idle, follow, hold, land"),
+                Some(wanted) => {
+                    autopilot.request(wanted);
+                    MavResult::MAV_RESULT_ACCEPTED
+                }
+            },
+            REBOOT if autopilot.is_armed() => denied(&"not while armed"),
+            REBOOT if request.param1 != 1.0 => denied(&"only to reboot"),
+            REBOOT => {
+                next = Next::Reboot;
+                MavResult::MAV_RESULT_ACCEPTED
+            }
+            MESSAGE => self.message(request, autopilot, send),
+            _ => MavResult::MAV_RESULT_UNSUPPORTED,
+        };
+        send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command: request.command, result: result as u8 }));
+        next
+    }
+
+    /// Sends what MAV_CMD_REQUEST_MESSAGE asks for; a list comes with the news.
+    fn message(
+        &mut self,
+        request: &COMMAND_LONG_DATA,
+        autopilot: &Autopilot,
+        send: &mut impl FnMut(MavMessage),
+    ) -> MavResult {
+        const MODE: f32 = 436.0;
+        const AVAILABLE: f32 = 435.0;
+        const VERSION: f32 = 148.0;
+        if request.param1 == MODE {
+            send(Self::current_mode(autopilot));
+        } else if request.param1 == VERSION {
+            send(version());
+        } else if request.param1 == AVAILABLE && request.param2 == 0.0 {
+            self.modes = Some(0);
+        } else if request.param1 == AVAILABLE {
+            let index = (request.param2 as usize).wrapping_sub(1);
+            let Some(mode) = modes::available(index) else { return MavResult::MAV_RESULT_DENIED };
+            send(mode);
+        } else {
+            return MavResult::MAV_RESULT_UNSUPPORTED;
+        }
+        MavResult::MAV_RESULT_ACCEPTED
+    }
+}
+
+/// What `MAV_CMD_DO_SET_MODE` asks for.
+fn wanted(request: &COMMAND_LONG_DATA) -> Option<Request> {
+    let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
+    MODES
+        .into_iter()
+        .filter(|_| is_custom)
+        .find(|&(mode, ..)| report::mode(mode) as u32 as f32 == request.param2)
+        .and_then(|(mode, ..)| match mode {
+            Mode::Idle => Some(Request::Idle),
+            Mode::Follow => Some(Request::Follow),
+            Mode::Hold => Some(Request::Hold),
+            Mode::Land => Some(Request::Land),
+            _ => None,
+        })
+}
+
+/// What the program is and can do.
+fn version() -> MavMessage {
+    /// MAVLink 2, and integers in PARAM_SET as their bytes. Signing would be a bit here.
+    const CAPABILITIES: u64 = 8192 | 16;
+    let number = |text: &str| text.parse::<u32>().unwrap_or_default();
+    let [major, minor, patch] =
+        [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]
+            .map(number);
+    let [a, b, c, d] = link::FINGERPRINT.to_le_bytes();
+    MavMessage::AUTOPILOT_VERSION(AUTOPILOT_VERSION_DATA {
+        capabilities: CAPABILITIES,
+        flight_sw_version: major << 24 | minor << 16 | patch << 8,
+        flight_custom_version: [a, b, c, d, 0, 0, 0, 0],
+        ..AUTOPILOT_VERSION_DATA::DEFAULT
+    })
+}

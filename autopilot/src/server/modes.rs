@@ -1,0 +1,57 @@
+//! The modes as MAVLink's standard messages announce them.
+
+use controller::{Mode, Request};
+use link::MavMessage;
+use link::dialect::*;
+
+use crate::report;
+
+/// Each mode's name, and whether it can be asked for.
+pub const MODES: [(Mode, &str, bool); 7] = [
+    (Mode::Off, "Off", false),
+    (Mode::Idle, "Idle", true),
+    (Mode::Join, "Join", false),
+    (Mode::Follow, "Follow", true),
+    (Mode::Hold, "Hold", true),
+    (Mode::Land, "Land", true),
+    (Mode::Fault, "Fault", false),
+];
+
+/// The mode at an index from 0.
+pub fn available(index: usize) -> Option<MavMessage> {
+    let (mode, name, can_be_asked_for) = *MODES.get(index)?;
+    let mut properties = MavModeProperty::MAV_MODE_PROPERTY_AUTO_MODE;
+    properties.set(MavModeProperty::MAV_MODE_PROPERTY_NOT_USER_SELECTABLE, !can_be_asked_for);
+    Some(MavMessage::AVAILABLE_MODES(AVAILABLE_MODES_DATA {
+        custom_mode: report::mode(mode) as u32,
+        properties: properties.bits().into(),
+        number_modes: MODES.len() as u8,
+        mode_index: index as u8 + 1,
+        standard_mode: standard(mode) as u8,
+        mode_name: link::text(name),
+    }))
+}
+
+/// The mode that it is in, and the one that was asked for.
+pub fn current(mode: Mode, request: Request) -> MavMessage {
+    let intended = match request {
+        Request::Idle => Mode::Idle,
+        Request::Follow => Mode::Follow,
+        Request::Hold => Mode::Hold,
+        Request::Land => Mode::Land,
+        _ => Mode::Off,
+    };
+    MavMessage::CURRENT_MODE(CURRENT_MODE_DATA {
+        custom_mode: report::mode(mode) as u32,
+        intended_custom_mode: report::mode(intended) as u32,
+        standard_mode: standard(mode) as u8,
+    })
+}
+
+fn standard(mode: Mode) -> MavStandardMode {
+    if mode == Mode::Land {
+        MavStandardMode::MAV_STANDARD_MODE_LAND
+    } else {
+        MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD
+    }
+}
