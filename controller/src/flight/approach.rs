@@ -4,7 +4,7 @@
 //! then follows the curve displaced by
 //!
 //! ```text
-//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0       (13.1)       (13.1)
+//! S((t − T_b)/T) (D + V T_b/2) + V E(t),   E˙ = S(t/T_b),   E(T_b) = 0       (13.1)
 //! S(x) = 1 − I_x(7, 7),   S′ = −12012 x⁶ (1 − x)⁶                             (13.2)
 //! ```
 //!
