@@ -1,0 +1,486 @@
+//! The payload filter: where the load is, from how the UAV moves and what thrust it was given.
+//!
+//! Twelve error states behind any navigation filter. The accelerometer drives a
+//! [pendulum](pendulum), whose swing the [thrust model](thrust) sees; navigation itself is never
+//! touched by what the load's model makes of it.
+//!
+//! A cycle of 30 periods (60 ms at 500 Hz) spreads the work: every period moves the pendulum on and
+//! sums up the thrust model's residual; the [covariance](predict) moves in two of them, and each
+//! scalar has one of its own.
+
+mod health;
+#[cfg(test)]
+mod jacobians;
+mod load;
+mod params;
+mod pendulum;
+mod predict;
+mod state;
+mod thrust;
+
+pub use health::{Cable, Health, Validity};
+pub use load::LoadMeasurement;
+pub use params::{PayloadNoise, PayloadParams};
+pub use state::PayloadState;
+
+use model::{Matrix3, OutOfRange, Real, State, Vector3};
+
+use crate::covariance::{Covariance, Scalar, dot};
+use crate::lever::{axes, swung};
+use crate::motion::Motion;
+use health::CableWatch;
+use load::Innovations;
+use pendulum::{Pendulum, Pivot, Pull};
+use predict::Spread;
+use state::{ERRORS, index};
+use thrust::{Axis, Linearized, Mean, Window};
+
+/// Periods of a cycle, and of half of one.
+const CYCLE: u8 = 30;
+const HALF: u8 = 15;
+/// Periods without inputs after which the estimate is blind: 0.1 s at 500 Hz.
+const BLIND: u16 = 50;
+/// Standard deviation of the rod above which it does not count as known, rad.
+const KNOWN: f64 = 0.15;
+/// Mean ν²/S above which noise does not explain what is seen.
+const CONSISTENT: f64 = 8.0;
+/// Mean ν²/S above which the filter starts anew from the cable's pull. A noise told three times too
+/// small is 9.
+const ASTRAY: f64 = 20.0;
+/// ν²/S of one scalar counts as so much at most: one wild window may not stand for many.
+const WILD: f64 = 25.0;
+/// Fastest rod, 1/s.
+const FASTEST: f64 = 30.0;
+/// Standard deviation of an accelerometer that was not read, m/s².
+const UNREAD: f64 = 2.0;
+
+/// What a step answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate<T> {
+    /// The law's state: payload and rod, with the line from the UAV's centre of mass to the load
+    /// for the rod.
+    pub state: State<T>,
+    /// The cable's pull m_L s by the pendulum, N.
+    pub tension: T,
+    /// Whether the cable carries.
+    pub cable: Cable,
+    /// What it is worth.
+    pub health: Health<T>,
+}
+
+/// The filter.
+#[derive(Clone, Debug)]
+pub struct Payload<T> {
+    params: PayloadParams<T>,
+    spread: Spread<T>,
+    state: PayloadState<T>,
+    covariance: Covariance<T, ERRORS>,
+    /// Variances at the start.
+    initial: [T; ERRORS],
+    /// The period's place in the cycle.
+    phase: u8,
+    window: Window<T>,
+    mean: Mean<T>,
+    linearized: Linearized<T>,
+    /// Whether the mass has been known to 15 % since the start.
+    is_mass_found: bool,
+    health: Health<T>,
+    /// Corrections of a batch that is not complete.
+    pending: [T; ERRORS],
+    watch: CableWatch<T>,
+    surprise: [T; 3],
+    load_surprise: T,
+    /// Innovations of the load's rod and rate: being summed up, and being taken in.
+    fresh: [Innovations<T>; 2],
+    taken: [Innovations<T>; 2],
+    last: Motion<T>,
+    pull: Pull<T>,
+    /// Periods without an input in a row, and in the running half cycle.
+    missing: u16,
+    unread: T,
+}
+
+impl<T: Real> Payload<T> {
+    /// A filter for a load that hangs straight down, as uncertain as the noise's start says.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] names the first parameter out of its range.
+    pub fn new(params: PayloadParams<T>) -> Result<Self, OutOfRange<T>> {
+        params.check()?;
+        let noise = &params.noise;
+        let (rod, rate, offset) = (noise.start_rod, noise.start_rate, noise.offset);
+        let deviations = [
+            rod,
+            rod,
+            rate,
+            rate,
+            noise.wind,
+            noise.wind,
+            noise.residual,
+            noise.residual,
+            offset,
+            offset,
+            noise.thrust,
+            noise.mass,
+        ];
+        Ok(Self {
+            spread: Spread::new(&params, params.period * T::lit(f64::from(HALF))),
+            state: PayloadState::hanging(),
+            covariance: Covariance::diagonal(&deviations),
+            initial: deviations.map(|deviation| deviation * deviation),
+            phase: 3,
+            window: Window::empty(),
+            mean: Mean { residual: Vector3::zeros(), thrust: T::zero(), is_full: false },
+            linearized: Linearized::none(),
+            is_mass_found: false,
+            health: Health {
+                validity: Validity::Converging,
+                rod_deviation: rod * T::lit(core::f64::consts::SQRT_2),
+                rate_deviation: rate * T::lit(core::f64::consts::SQRT_2),
+                surprise: [T::one(); 3],
+            },
+            pending: [T::zero(); ERRORS],
+            watch: CableWatch::new(Cable::Taut),
+            surprise: [T::one(); 3],
+            load_surprise: T::one(),
+            fresh: [Innovations::none(); 2],
+            taken: [Innovations::none(); 2],
+            last: Motion::at_rest(Vector3::zeros(), params.gravity),
+            pull: Pull { u: Vector3::zeros(), tension: params.gravity, acceleration: Vector3::zeros() },
+            missing: 0,
+            unread: T::zero(),
+            params,
+        })
+    }
+
+    /// The same, told where the rod is: `rod` in N of any length, `rate` 1/s. It is believed to the
+    /// start's deviations.
+    #[must_use]
+    pub fn with_rod(mut self, rod: &Vector3<T>, rate: &Vector3<T>) -> Self {
+        let length = rod.dot(rod).sqrt();
+        if length > T::zero() && rod.z > T::zero() && length.is_finite() && rate.dot(rate).is_finite() {
+            self.state.set_rod([rod.x / length, rod.y / length], [rate.x, rate.y]);
+        }
+        self
+    }
+
+    /// The same, with the load on the ground: the cable is slack until it pulls.
+    #[must_use]
+    pub fn with_slack_cable(mut self) -> Self {
+        self.watch = CableWatch::new(Cable::Slack);
+        self
+    }
+
+    /// What it was told.
+    pub fn params(&self) -> &PayloadParams<T> {
+        &self.params
+    }
+
+    /// The nominal state: wind, thrust scale and mass among it.
+    pub fn nominal(&self) -> &PayloadState<T> {
+        &self.state
+    }
+
+    /// The covariance of the errors, in the order (η, ζ, w, r, l, k_T, μ).
+    pub fn covariance(&self) -> &[[T; ERRORS]; ERRORS] {
+        &self.covariance.0
+    }
+
+    /// A measurement of the load of `age` s, compared with the rod at once and taken in within a
+    /// cycle. One that is not finite, or whose deviation is not positive, is ignored; so is any
+    /// while the cable is slack. Returns whether it counts.
+    pub fn observe(&mut self, measurement: &LoadMeasurement<T>, age: T) -> bool {
+        let (value, deviation) = match measurement {
+            LoadMeasurement::Direction(value, deviation)
+            | LoadMeasurement::Position(value, deviation)
+            | LoadMeasurement::Velocity(value, deviation) => (value, *deviation),
+        };
+        let is_usable = value.dot(value).is_finite()
+            && deviation > T::zero()
+            && deviation.is_finite()
+            && age >= T::zero()
+            && age <= T::lit(0.5)
+            && self.watch.cable == Cable::Taut;
+        if !is_usable {
+            return false;
+        }
+        let per_length = T::one() / self.params.cable_length;
+        let [rods, rates] = &mut self.fresh;
+        match measurement {
+            LoadMeasurement::Direction(rod, _) => {
+                let length = rod.dot(rod).sqrt();
+                if !(length > T::zero() && rod.z > T::zero()) {
+                    return false;
+                }
+                rods.add_rod([rod.x / length, rod.y / length], deviation, age, &self.state, &self.pull);
+            }
+            LoadMeasurement::Position(place, _) => {
+                // Where the hook was then.
+                let hook = self.last.position + self.last.attitude * self.params.hook - self.last.velocity * age;
+                let rod = (place - hook) * per_length;
+                rods.add_rod([rod.x, rod.y], deviation * per_length, age, &self.state, &self.pull);
+            }
+            LoadMeasurement::Velocity(velocity, _) => {
+                let lever = self.last.attitude * self.last.body_rate.cross(&self.params.hook);
+                let rate = (velocity - self.last.velocity - lever) * per_length;
+                rates.add_rate([rate.x, rate.y], deviation * per_length, age, &self.state, &self.pull);
+            }
+        }
+        true
+    }
+
+    /// One period: `motion` at its end, and the mean `thrust` over it, N, as the rotors give it by
+    /// their speed, or as a model of them has it. What is `None` or can't be is missing: without
+    /// motion the last one goes on, without thrust nothing is learnt.
+    #[inline(never)]
+    pub fn step(&mut self, motion: Option<&Motion<T>>, thrust: Option<T>) -> Estimate<T> {
+        let before = self.last.body_rate;
+        let usable = motion.filter(|motion| motion.is_usable());
+        if let Some(motion) = usable {
+            self.last = *motion;
+            self.missing = 0;
+        } else {
+            self.missing = self.missing.saturating_add(1);
+            self.unread += T::one();
+        }
+        let params = &self.params;
+        let Motion { position, velocity, attitude, body_rate, specific_force } = self.last;
+        let turning = (body_rate - before) * (T::one() / params.period);
+        let center = specific_force - swung(&body_rate, &turning, &params.imu);
+        let hooked = center + swung(&body_rate, &turning, &params.hook);
+        let reach = attitude * params.hook;
+        // Force is the period's mean, attitude its end's: turned back by half a period.
+        let halfway = hooked - body_rate.cross(&hooked) * (params.period * T::lit(0.5));
+        let pivot = Pivot {
+            velocity: velocity + attitude * body_rate.cross(&params.hook),
+            specific_force: attitude * halfway,
+        };
+        let pendulum = Pendulum::new(params, &self.state);
+        self.pull = if self.watch.cable == Cable::Taut {
+            pendulum.advance(params, &pivot, &mut self.state)
+        } else {
+            pendulum.pull(params, &pivot, &self.state.rod, &self.state.rod_rate)
+        };
+        // No rotors give more than ten times what the vehicle weighs.
+        let most = (params.uav_mass + params.payload_mass) * params.gravity * T::lit(10.0);
+        let thrust = thrust.filter(|&thrust| thrust >= T::zero() && thrust <= most);
+        if let (Some(_), Some(thrust)) = (usable, thrust) {
+            self.window.add(params, &self.state, (&pendulum, &self.pull), &attitude, &velocity, &center, thrust);
+        }
+        self.work(&pendulum, &pivot, &attitude, &velocity);
+        self.phase = if self.phase + 1 >= CYCLE { 0 } else { self.phase + 1 };
+        self.estimate(&position, &reach, &pivot.velocity)
+    }
+
+    /// What the cycle has for this period.
+    fn work(&mut self, pendulum: &Pendulum<T>, pivot: &Pivot<T>, attitude: &Matrix3<T>, velocity: &Vector3<T>) {
+        match self.phase {
+            0 => {
+                self.close_window(attitude);
+                self.linearized = Linearized::about(&self.params, &self.state, pendulum, pivot, velocity);
+            }
+            1 => self.take_thrust(attitude, Axis::First),
+            2 => self.take_thrust(attitude, Axis::Second),
+            3 => self.take_thrust(attitude, Axis::Thrust),
+            4 => {
+                self.settle();
+                self.is_mass_found |= self.covariance.0[index::MASS][index::MASS] < T::lit(0.15 * 0.15);
+                if self.is_astray() {
+                    self.restart(false);
+                }
+                self.health = self.judge();
+            }
+            5 | 20 => self.spread(pendulum, pivot),
+            6 => {
+                self.taken = self.fresh;
+                self.fresh = [Innovations::none(); 2];
+                self.take_load(0, 0);
+            }
+            7 => self.take_load(0, 1),
+            8 => self.take_load(1, 0),
+            9 => self.take_load(1, 1),
+            10 => self.settle(),
+            _ => {}
+        }
+    }
+
+    /// Ends a window: its mean is for the coming three scalars, its pull for the cable.
+    fn close_window(&mut self, attitude: &Matrix3<T>) {
+        self.mean = self.window.mean(T::lit(f64::from(HALF)));
+        self.window = Window::empty();
+        if !self.mean.is_full {
+            return;
+        }
+        let mass = self.params.payload_mass * (T::one() + self.state.mass_ratio);
+        let pull = self.state.rod * (mass * self.pull.tension) + attitude * self.mean.residual * self.params.uav_mass;
+        if self.watch.look(&pull, mass * self.params.gravity) {
+            self.restart(true);
+        }
+    }
+
+    /// What is measured has been far from what was expected for a second: the filter is sure of a
+    /// rod that is not there.
+    fn is_astray(&self) -> bool {
+        let [x, y, z] = self.surprise;
+        self.watch.cable == Cable::Taut && x.max(y).max(z).max(self.load_surprise) > T::lit(ASTRAY)
+    }
+
+    /// The cable has changed, or the filter has lost the rod: taut, the rod is where it pulls, and
+    /// nothing is known of its swing or of what hangs there; slack, there is none.
+    fn restart(&mut self, is_new: bool) {
+        let pull = self.watch.pull;
+        self.state.set_rod([T::zero(); 2], [T::zero(); 2]);
+        if self.watch.cable == Cable::Taut && pull.z > T::zero() {
+            let per_length = T::one() / pull.dot(&pull).sqrt();
+            self.state.set_rod([pull.x * per_length, pull.y * per_length], [T::zero(); 2]);
+        }
+        for (component, &variance) in self.initial.iter().enumerate() {
+            // What hangs there may be another load only where the cable was slack.
+            if component < index::WIND || (component == index::MASS && is_new) {
+                self.covariance.forget(component, variance);
+            }
+        }
+        self.is_mass_found &= !is_new;
+        self.surprise = [T::one(); 3];
+        self.load_surprise = T::one();
+        self.fresh = [Innovations::none(); 2];
+        self.taken = [Innovations::none(); 2];
+        self.mean.is_full = false;
+    }
+
+    /// One scalar of the thrust model.
+    fn take_thrust(&mut self, attitude: &Matrix3<T>, axis: Axis) {
+        if !self.mean.is_full || self.watch.cable == Cable::Slack {
+            return;
+        }
+        let [x, y, z] = &mut self.surprise;
+        let [b1, b2, b3] = axes(attitude);
+        let (mean, body) = match axis {
+            Axis::First => (x, b1),
+            Axis::Second => (y, b2),
+            Axis::Thrust => (z, b3),
+        };
+        let window = self.params.period * T::lit(f64::from(CYCLE));
+        let is_witnessed = self.taken.iter().any(|taken| !taken.is_empty());
+        let (scalar, along) = self.linearized.scalar(&self.params, axis, &body, &self.mean, window, is_witnessed);
+        let is_considered = thrust::is_considered(&self.covariance, axis, along, self.is_mass_found);
+        let surprise = take(&mut self.covariance, &mut self.pending, &scalar, is_considered);
+        // Over a second.
+        *mean += (surprise.min(T::lit(WILD)) - *mean) * T::lit(0.06);
+    }
+
+    /// One scalar of the load's measurements.
+    fn take_load(&mut self, kind: usize, axis: usize) {
+        if let Some(taken) = self.taken.get(kind).filter(|taken| !taken.is_empty()) {
+            let scalar = taken.scalar(axis, kind == 1);
+            let surprise = take(&mut self.covariance, &mut self.pending, &scalar, true);
+            self.load_surprise += (surprise.min(T::lit(WILD)) - self.load_surprise) * T::lit(0.03);
+        }
+    }
+
+    /// Ends a batch.
+    fn settle(&mut self) {
+        self.state.inject(&self.pending);
+        self.fresh.iter_mut().enumerate().for_each(|(kind, fresh)| fresh.shift(&self.pending, kind == 1));
+        self.pending = [T::zero(); ERRORS];
+    }
+
+    /// Moves the covariance on.
+    fn spread(&mut self, pendulum: &Pendulum<T>, pivot: &Pivot<T>) {
+        if self.watch.cable == Cable::Slack {
+            return;
+        }
+        let sensitivity = pendulum.sensitivity(&self.params, pivot, &self.state);
+        let rows = sensitivity.acceleration(&self.params, &self.state.rod);
+        self.spread.advance(&mut self.covariance, &rows, &self.state.rod, &self.initial);
+        // Each period unread moves the rod by what the accelerometer might have said.
+        let unread = T::lit(UNREAD) * self.params.period / self.params.cable_length * self.unread;
+        for i in [index::RATE, index::RATE + 1] {
+            self.covariance.0[i][i] += unread * unread;
+        }
+        let (rod, rate) = (T::one(), T::lit(FASTEST * FASTEST));
+        self.covariance.limit(&[(0, rod), (1, rod), (2, rate), (3, rate)]);
+        self.unread = T::zero();
+        // Readings that can't be true, kept up, may not make the rod whirl beyond what a state may
+        // hold.
+        let turning = self.state.rod_rate.dot(&self.state.rod_rate);
+        if turning > T::lit(FASTEST * FASTEST) {
+            self.state.rod_rate *= T::lit(FASTEST) / turning.sqrt();
+        }
+    }
+
+    /// The answer.
+    fn estimate(&self, position: &Vector3<T>, reach: &Vector3<T>, hook_velocity: &Vector3<T>) -> Estimate<T> {
+        let Motion { attitude, body_rate, velocity, .. } = &self.last;
+        let length = self.params.cable_length;
+        let (q, w) = (self.state.rod, self.state.rod_rate);
+        // From the centre of mass to the load: the line that the law takes for the rod.
+        let line = reach + q * length;
+        let load_velocity = hook_velocity + w * length;
+        let closing = load_velocity - velocity;
+        let per_length = T::one() / line.dot(&line).sqrt();
+        let rod = line * per_length;
+        let state = State {
+            position: position + line,
+            velocity: load_velocity,
+            rod,
+            rod_rate: (closing - rod * rod.dot(&closing)) * per_length,
+            attitude: *attitude,
+            body_rate: *body_rate,
+        };
+        let mass = self.params.payload_mass * (T::one() + self.state.mass_ratio);
+        let mut health = self.health;
+        if self.missing > BLIND {
+            health.validity = Validity::Blind;
+        }
+        Estimate { state, tension: mass * self.pull.tension, cable: self.watch.cable, health }
+    }
+
+    /// What the filter is worth, once a cycle.
+    fn judge(&self) -> Health<T> {
+        let p = &self.covariance.0;
+        let rod_deviation = (p[0][0] + p[1][1]).sqrt();
+        Health {
+            validity: self.validity(rod_deviation),
+            rod_deviation,
+            rate_deviation: (p[2][2] + p[3][3]).sqrt(),
+            surprise: self.surprise,
+        }
+    }
+
+    fn validity(&self, rod_deviation: T) -> Validity {
+        let [x, y, z] = self.surprise;
+        if self.watch.cable == Cable::Slack {
+            Validity::Slack
+        } else if rod_deviation > T::lit(KNOWN) {
+            Validity::Converging
+        } else if x.max(y).max(z) > T::lit(CONSISTENT) {
+            Validity::Inconsistent
+        } else {
+            Validity::Valid
+        }
+    }
+}
+
+/// Takes in a scalar of a batch, whose innovation is against the state before the batch. The mass
+/// may be only considered. Returns ν²/S.
+fn take<T: Real>(
+    covariance: &mut Covariance<T, ERRORS>,
+    pending: &mut [T; ERRORS],
+    scalar: &Scalar<T, ERRORS>,
+    is_considered: bool,
+) -> T {
+    let innovation = scalar.innovation - dot(&scalar.h, pending);
+    if !innovation.is_finite() {
+        return T::zero();
+    }
+    let mass = pending[index::MASS];
+    let absorbed = covariance.absorb(scalar, innovation, is_considered.then_some(index::MASS));
+    for (sum, correction) in pending.iter_mut().zip(absorbed.correction) {
+        *sum += correction;
+    }
+    if is_considered {
+        pending[index::MASS] = mass;
+    }
+    absorbed.surprise
+}

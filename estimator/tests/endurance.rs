@@ -1,0 +1,91 @@
+//! A day in single precision: the covariance stays positive, and nothing drifts.
+
+use estimator::{Fix, Imu, Motion, Navigation, NavigationParams, Payload, PayloadParams, Vector3};
+use model::VehicleParams;
+
+const PERIOD: f32 = 0.002;
+const G: f32 = 9.81;
+const DAY_S: u64 = 24 * 3600;
+
+/// Least eigenvalue's sign by a Cholesky factorization in f64 of the matrix scaled to a unit
+/// diagonal; the least pivot.
+#[expect(clippy::needless_range_loop, reason = "two sides of a matrix")]
+fn least_pivot<const N: usize>(p: &[[f32; N]; N]) -> f64 {
+    let mut a = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..N {
+            a[i][j] = f64::from(p[i][j]) / (f64::from(p[i][i]) * f64::from(p[j][j])).sqrt();
+        }
+    }
+    let mut least = f64::INFINITY;
+    for k in 0..N {
+        let pivot = a[k][k];
+        least = least.min(pivot);
+        for i in k + 1..N {
+            let factor = a[i][k] / pivot;
+            for j in k + 1..N {
+                a[i][j] -= factor * a[k][j];
+            }
+        }
+    }
+    least
+}
+
+/// A normal enough number: the sum of four uniform ones, scaled.
+fn noise(random: &mut u64) -> f32 {
+    let mut sum = 0.0;
+    for _ in 0..4 {
+        *random ^= *random << 13;
+        *random ^= *random >> 7;
+        *random ^= *random << 17;
+        sum += (*random >> 40) as f32 / (1 << 23) as f32 - 1.0;
+    }
+    sum * 0.866
+}
+
+/// Hover in noise for a day, both filters, one behind the other.
+#[test]
+fn a_day_of_hovering() {
+    let start = Motion::at_rest(Vector3::new(3.0, -2.0, -10.0), G);
+    let mut navigation = Navigation::<f32>::new(NavigationParams::every(PERIOD), &start, [0.02, 0.1]).unwrap();
+    let mut payload = Payload::new(PayloadParams::of(&VehicleParams::paper(), PERIOD)).unwrap();
+    let mut random = 77;
+    // 0.015 m/s²/√Hz and 7e-4 rad/s/√Hz at 500 Hz.
+    let (force, rate) = (0.335, 0.0157);
+    let mut worst = [f64::INFINITY; 2];
+    let (mut off, mut swing) = (0.0_f32, 0.0_f32);
+    for step in 0..DAY_S * 500 {
+        let mut vector = |deviation: f32| Vector3::from_fn(|_, _| deviation * noise(&mut random));
+        let imu = Imu {
+            body_rate: vector(rate) + Vector3::new(0.002, -0.001, 0.003),
+            specific_force: vector(force) + Vector3::new(0.02, 0.01, -0.03 - G),
+        };
+        if step % 50 == 0 {
+            let fix = Fix {
+                position: Some(start.position + vector(0.012)),
+                velocity: Some(vector(0.04)),
+                position_accuracy: [0.012, 0.02],
+                velocity_accuracy: [0.04, 0.06],
+                age: 0.1,
+            };
+            navigation.fix(&fix).unwrap();
+        }
+        if step % 25 == 0 {
+            navigation.heading(0.03 * noise(&mut random)).unwrap();
+        }
+        let motion = navigation.step(Some(&imu));
+        let estimate = payload.step(Some(&motion), Some(3.0 * G));
+        if step % 50_000 == 49_999 {
+            worst[0] = worst[0].min(least_pivot(navigation.covariance()));
+            worst[1] = worst[1].min(least_pivot(payload.covariance()));
+            off = off.max((motion.position - start.position).amax());
+            swing = swing.max(estimate.state.rod.x.abs().max(estimate.state.rod.y.abs()));
+        }
+    }
+    eprintln!("least pivots {worst:?}, off {off} m, rod {swing} rad");
+    assert!(worst[0] > 0.0 && worst[1] > 0.0, "{worst:?}");
+    // Four of the deviations that each filter has of itself, 8 mm and 1°: of 860 samples none is
+    // likely to be beyond.
+    assert!(off < 0.04, "{off}");
+    assert!(swing < 0.07, "{swing}");
+}
