@@ -23,6 +23,8 @@ pub struct Measured {
     pub best: u64,
     /// Instructions of the slowest step.
     pub worst: u64,
+    /// Instructions in the mean over all steps, rounded up.
+    pub mean: u64,
     /// High water of the painted stack, bytes.
     pub stack: u64,
     /// Size of the law's whole state, bytes.
@@ -98,6 +100,7 @@ fn parse(text: &str) -> Result<Output> {
                 entry: u32::try_from(number("entry")?)? & !1,
                 best: number("best")?,
                 worst: number("worst")?,
+                mean: number("total")?.div_ceil(number("steps")?.max(1)),
                 stack: number("stack")?,
                 ram: number("ram")?,
                 digest: number("digest")?,
@@ -116,10 +119,10 @@ mod tests {
 
     #[test]
     fn a_bench_that_stops_early_is_an_error() {
-        let line = "case=circle entry=401 best=10 worst=11 stack=20 ram=30 digest=ff \n";
+        let line = "case=circle entry=401 best=10 worst=11 total=21 steps=2 stack=20 ram=30 digest=ff \n";
         assert!(parse(line).is_err());
         let output = parse(&format!("{line}roots=7 \n")).unwrap();
-        let expected = Measured { entry: 0x400, best: 16, worst: 17, stack: 32, ram: 48, digest: 255 };
+        let expected = Measured { entry: 0x400, best: 16, worst: 17, mean: 17, stack: 32, ram: 48, digest: 255 };
         assert_eq!(output.cases, [("circle".to_owned(), expected)]);
         assert!(parse("refused=bent \nroots=7 \n").is_err());
     }

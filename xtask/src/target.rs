@@ -75,7 +75,7 @@ fn rows(image: &Image, outputs: &[(&str, Output)]) -> Result<Vec<Row>> {
         });
         Ok(Row {
             name: name.clone(),
-            instructions: Extremes { best: measured.best, worst: measured.worst },
+            instructions: Extremes { best: measured.best, worst: measured.worst, mean: measured.mean },
             code_bytes: image.calls.code_bytes(&image.calls.reachable(measured.entry)),
             stack_painted: measured.stack,
             stack_bound,
@@ -94,6 +94,7 @@ fn summary(image: &Image, rows: &[Row], outputs: &[(&str, Output)]) -> Report {
         instructions: rows.iter().map(|row| (row.name.clone(), row.instructions)).collect(),
         code_bytes: code.get(PLAIN).copied().unwrap_or(0),
         code_bytes_by_case: code,
+        ram_bytes_by_case: rows.iter().map(|row| (row.name.clone(), row.ram_bytes)).collect(),
         ram_bytes: rows.iter().map(|row| row.ram_bytes).max().unwrap_or(0),
         stack_bytes: rows.iter().map(|row| row.stack_bound).max().unwrap_or(0),
         bit_identical: rows.iter().all(|row| row.identical.iter().all(|(_, same)| *same))

@@ -14,11 +14,14 @@ use console::Console;
 use cortex_m_semihosting::debug::{self, EXIT_FAILURE, EXIT_SUCCESS};
 use probe::Probe;
 
-/// What the fastest, the slowest and the deepest of the steps took.
+/// What the fastest, the slowest and the deepest of the steps took, and all of them.
 struct Extremes {
     best: u32,
     worst: u32,
     stack: u32,
+    /// Of all steps together, and how many there were.
+    total: u64,
+    steps: u64,
 }
 
 struct Bench {
@@ -33,18 +36,22 @@ impl Visitor for Bench {
             self.console.end();
             return;
         };
-        let mut extremes = Extremes { best: u32::MAX, worst: 0, stack: 0 };
+        let mut extremes = Extremes { best: u32::MAX, worst: 0, stack: 0, total: 0, steps: 0 };
         let digest = cases::exercise(&mut case, |case, state| {
             let (output, cost) = self.probe.measure(step::<C>, case, state);
             extremes.best = extremes.best.min(cost.instructions);
             extremes.worst = extremes.worst.max(cost.instructions);
             extremes.stack = extremes.stack.max(cost.stack_bytes);
+            extremes.total += u64::from(cost.instructions);
+            extremes.steps += 1;
             output
         });
         self.console.field("case", name);
         self.console.number("entry", step::<C> as *const () as u64);
         self.console.number("best", extremes.best.into());
         self.console.number("worst", extremes.worst.into());
+        self.console.number("total", extremes.total);
+        self.console.number("steps", extremes.steps);
         self.console.number("stack", extremes.stack.into());
         self.console.number("ram", size_of::<C>() as u64);
         self.console.number("digest", digest.value());

@@ -4,12 +4,14 @@
 
 mod alone;
 mod digest;
+mod filters;
 mod flown;
 mod laws;
 mod paths;
 mod random;
 
 use alone::Alone;
+use filters::{LoadAndNavigation, LoadBehindNavigation};
 use flown::Flown;
 use laws::{Following, Tracking};
 
@@ -53,6 +55,8 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("law-circle", paths::circle().and_then(|path| Alone::new(path, paths::on_circle)));
     visitor.visit("law-bent", paths::bent().and_then(|path| Alone::new(path, paths::on_bent)));
     visitor.visit("flown", Flown::new());
+    visitor.visit("load-filter", LoadBehindNavigation::new());
+    visitor.visit("load-filter-and-navigation", LoadAndNavigation::new());
 }
 
 /// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after
