@@ -118,7 +118,7 @@ impl Flight {
         let mut largest = 0.0_f64;
         for _ in 0..(seconds / PERIOD) as u32 {
             self.step();
-            if self.samples % MEASURED == 0 {
+            if self.samples.is_multiple_of(MEASURED) {
                 largest = largest.max(self.distance());
             }
         }
