@@ -46,6 +46,7 @@ pub fn fault(fault: Fault) -> LoadFault {
         Fault::Margin(which) => margin(which),
         Fault::NotFinite => LoadFault::LOAD_FAULT_LAW,
         Fault::NoPath => LoadFault::LOAD_FAULT_NO_PATH,
+        Fault::Slack => LoadFault::LOAD_FAULT_TENSION,
         Fault::PayloadLost => LoadFault::LOAD_FAULT_PAYLOAD_LOST,
         _ => LoadFault::empty(),
     }
@@ -56,6 +57,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
     let name = match mode {
         Mode::Off => "off",
         Mode::Idle => "idle",
+        Mode::TakeOff => "taking off",
         Mode::Join => "joining the path",
         Mode::Follow => "on the path",
         Mode::Hold => "hold",
@@ -79,6 +81,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::Margin(margin)), _) => margin_text(margin),
         (Some(Fault::NotFinite), _) => "law's answer not finite",
         (Some(Fault::NoPath), _) => "no point of the path found",
+        (Some(Fault::Slack), _) => "cable slack",
         (Some(Fault::PayloadLost), _) => "payload lost",
         (Some(_), _) => "another fault",
         (None, _) => "",

@@ -83,21 +83,28 @@ def pace():
     close(max(within), 1.0, 1e-12, "one limit is met, none exceeded")
 
 
-@covers("14.1", "14.2", "14.3")
+@covers("14.1", "14.2", "14.3", "14.4", "14.5")
 def hold():
     car = TABLE_I
     for _ in range(20):
         x = State.of(random_x())
-        dist = Disturbance(Vec(*numbers(3, 0.5)), NOTHING, Vec(*numbers(3, 0.3)))
-        dist.delta = dist.delta - x.q * x.q.dot(dist.delta)
-        a = Vec(*numbers(3, 1.0))
-        u = E3 * car.g + dist.d - dist.delta * car.length - a + x.q * (car.m_l / car.m * car.length * x.w.dot(x.w))
-        f = u * car.m_q + x.q * (car.m_l * x.q.dot(u))
-        # With the thrust along f, the UAV has the acceleration a.
-        x.b = (x.b[0], x.b[1], f / f.norm())
-        v_dot, w_dot, _, _ = model(car, x, f.norm(), NOTHING, dist)
-        close(v_dot - w_dot * car.length, a, 1e-12, "(14.1)")
-    # (14.2) and (14.3) are laws, not identities: their loops are stable without swing and with one-sided limits off.
+        first, pushed, second = (Vec(*numbers(3, 1.0)) for _ in range(3))
+        thrust = 20.0 + 5.0 * pushed[0]
+        dist = Disturbance(NOTHING, NOTHING, NOTHING)
+        v_dot, w_dot, _, _ = model(car, x, thrust, NOTHING, dist)
+        b3 = x.b[2]
+        pull = v_dot - w_dot * car.length - E3 * car.g + b3 * (thrust / car.m_q)
+        lam = x.q.dot(v_dot - E3 * car.g)
+        close(pull, x.q * (-car.m_l / car.m_q * lam), 1e-12, "(14.1)")
+        # (14.3): with this force, what it was solved for.
+        for a in (first, second):
+            force = (E3 * car.g + pull - a) * car.m_q
+            close(E3 * car.g + pull - force / car.m_q, a, 1e-12, "(14.3)")
+    # (14.2): with e = v - v^ and a steady pull, e' = -2 o e - (f - f*), f' = o^2 e: both poles at -o.
+    o = 10.0
+    for root in roots([o * o, 2 * o]):
+        close(root, -o, 1e-6, "(14.2)")
+    # (14.4) and (14.5) are laws, not identities: their loops are stable without swing and with one-sided limits off.
     for coefficients in ([0.3, 1.0, 2.0], [64.0, 16.0]):
         assert all(root.real < 0 for root in roots(coefficients))
 

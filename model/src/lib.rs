@@ -17,12 +17,14 @@ mod disturbance;
 mod dual;
 pub mod dynamics;
 mod error;
+mod frames;
 mod range;
 mod scalar;
 mod series;
 mod state;
 #[cfg(feature = "trap")]
 mod trap;
+mod uav;
 mod vehicle;
 mod yaw;
 
@@ -31,6 +33,7 @@ pub use command::Command;
 pub use disturbance::Disturbance;
 pub use dual::{Dual, variables};
 pub use error::OutOfRange;
+pub use frames::Frames;
 pub use nalgebra::{Matrix3, Vector3};
 pub use range::Range;
 pub use scalar::Real;
@@ -38,6 +41,7 @@ pub use series::Series;
 pub use state::{Channel, State, is_within};
 #[cfg(feature = "trap")]
 pub use trap::Trapped;
+pub use uav::Uav;
 pub use vehicle::{Vehicle, VehicleParams};
 pub use yaw::Yaw;
 

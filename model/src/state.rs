@@ -21,6 +21,10 @@ pub enum Channel {
     Attitude,
     /// Body rate.
     BodyRate,
+    /// The UAV's own position.
+    UavPosition,
+    /// The UAV's own velocity.
+    UavVelocity,
 }
 
 /// Configuration and velocity of payload, rod and UAV.
@@ -138,17 +142,9 @@ impl<T: Real> State<T> {
     /// The first [`Channel`] that is not.
     #[inline]
     pub fn check(&self) -> Result<(), Channel> {
-        // The squared distance from one.
-        let off = |of_one: T| (of_one - T::one()) * (of_one - T::one());
-        let tolerance = T::lit(0.02 * 0.02);
         let within = |v: &Vector3<T>, most: f64| is_within(v, T::lit(most * most));
-        let b1: Vector3<T> = self.attitude.column(0).into();
-        let b2: Vector3<T> = self.attitude.column(1).into();
-        let b3: Vector3<T> = self.attitude.column(2).into();
-        // Three vectors of length one span a volume of one only at right angles.
-        let off_frame = off(b1.dot(&b1)) + off(b2.dot(&b2)) + off(b3.dot(&b3)) + off(b1.cross(&b2).dot(&b3));
-        let is_unit = off(self.rod.dot(&self.rod)) <= tolerance;
-        let is_frame = off_frame <= tolerance;
+        let is_unit = off_one(self.rod.dot(&self.rod)) <= T::lit(TOLERANCE * TOLERANCE);
+        let is_frame = is_frame(&self.attitude);
         if !within(&self.position, 1e5) {
             Err(Channel::Position)
         } else if !within(&self.velocity, 1e3) {
@@ -184,4 +180,24 @@ impl<T: Real> State<T> {
 #[inline(never)]
 pub fn is_within<T: Real>(v: &Vector3<T>, squared: T) -> bool {
     v.dot(v) <= squared
+}
+
+/// What 1 % of a length makes of its square.
+const TOLERANCE: f64 = 0.02;
+
+/// The squared distance from one.
+#[inline]
+fn off_one<T: Real>(x: T) -> T {
+    (x - T::one()) * (x - T::one())
+}
+
+/// Columns within 1 % of unit length, and a right-handed frame.
+#[inline]
+pub(crate) fn is_frame<T: Real>(attitude: &Matrix3<T>) -> bool {
+    let b1: Vector3<T> = attitude.column(0).into();
+    let b2: Vector3<T> = attitude.column(1).into();
+    let b3: Vector3<T> = attitude.column(2).into();
+    // Three vectors of length one span a volume of one only at right angles.
+    let off = off_one(b1.dot(&b1)) + off_one(b2.dot(&b2)) + off_one(b3.dot(&b3)) + off_one(b1.cross(&b2).dot(&b3));
+    off <= T::lit(TOLERANCE * TOLERANCE)
 }

@@ -2,8 +2,8 @@
 
 use controller::{
     ActuatorLimits, ApproachLimits, Circle, Command, Controller, Curve, EnvelopeParams, Follow, Follower, Gains, Law,
-    Mode, ObserverParams, Output, Path, Policy, Request, Sampling, State, Supervisor, Vector3, Vehicle,
-    VehicleParams,
+    Measured, Mode, ObserverParams, Output, Path, Policy, Request, Sampling, State, Supervisor, Uav, Vector3,
+    Vehicle, VehicleParams,
 };
 use hil_sim::world::multibody::{Loads, Multibody};
 use witness::plant::VehicleParameters;
@@ -91,9 +91,26 @@ impl<L: Law<f32>> Flight<L> {
         self.step_seeing(Some(&sampled), request)
     }
 
-    /// The same, with what the law sees.
+    /// The UAV by its own navigation.
+    pub fn uav(&self) -> Uav<f32> {
+        Uav::of(&self.body.state().cast(), &vehicle())
+    }
+
+    /// One control period in which the law sees the state or does not, and the UAV's own navigation.
+    pub fn step_knowing(&mut self, sees: bool, uav: Option<&Uav<f32>>, request: Request) -> Output<f32> {
+        let sampled = self.body.state().cast();
+        let measured = Measured { state: sees.then_some(&sampled), uav, specific_force: None };
+        let output = self.supervisor.step_measured(&measured, request);
+        self.fly(output)
+    }
+
+    /// One control period with what the law sees.
     pub fn step_seeing(&mut self, sampled: Option<&State<f32>>, request: Request) -> Output<f32> {
         let output = self.supervisor.step(sampled, request);
+        self.fly(output)
+    }
+
+    fn fly(&mut self, output: Output<f32>) -> Output<f32> {
         assert_bounded(&output);
         let command = exact(&output.command);
         let share = if self.lag > 0.0 { 1.0 - (-PERIOD / 2.0 / self.lag).exp() } else { 1.0 };

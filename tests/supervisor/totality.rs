@@ -4,10 +4,11 @@
 
 use controller::{
     ActuatorLimits, ApproachLimits, Band, Circle, Command, Curve, EnvelopeParams, Follow, Follower, Gains, Lost,
-    Matrix3, ObserverParams, Policy, Request, Sampling, State, Supervisor, Vector3, Vehicle, VehicleParams,
+    Matrix3, Measured, ObserverParams, Policy, Request, Sampling, State, Supervisor, Uav, Vector3, Vehicle,
+    VehicleParams,
 };
 
-use crate::flight::{LIMITS, PERIOD, assert_bounded, follower, gains, supervise};
+use crate::flight::{LIMITS, PERIOD, assert_bounded, follower, gains, supervise, vehicle};
 
 /// A small generator of bits: xorshift.
 struct Bits(u64);
@@ -140,7 +141,7 @@ fn every_bit_pattern_of_the_state_is_answered_and_leaves_no_trace() {
     ];
     let steps = steps();
     let mut done = 0;
-    let mut flown = [0_usize; 7];
+    let mut flown = [0_usize; 8];
     while done < steps {
         let sampling = samplings[bits.next() as usize % samplings.len()];
         let policy = policies[bits.next() as usize % policies.len()];
@@ -175,7 +176,15 @@ fn every_bit_pattern_of_the_state_is_answered_and_leaves_no_trace() {
                 // A good one, so that the modes of flight are reached and left from.
                 _ => Some(State { velocity: bits.vector(0.5), body_rate: bits.vector(0.5), ..near }),
             };
-            let output = law.step(state.as_ref(), request);
+            let uav = match bits.next() >> 61 {
+                0 => Some(Uav::of(&bits.noise(), &vehicle())),
+                1 => Some(Uav::of(&bits.spoilt(), &vehicle())),
+                2 => Some(Uav::of(&near, &vehicle())),
+                _ => None,
+            };
+            let specific_force = (bits.next() >> 62 == 0).then(|| Vector3::new(bits.raw(), bits.raw(), bits.raw()));
+            let measured = Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force };
+            let output = law.step_measured(&measured, request);
             assert_bounded(&output);
             assert!(law.disturbance().payload.iter().all(|d| d.is_finite()), "{:?}", law.disturbance());
             flown[output.mode as usize] += 1;

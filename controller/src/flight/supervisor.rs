@@ -1,24 +1,31 @@
 //! The law, supervised: modes, envelope, faults, and a command for every input.
 
-use model::{Channel, Command, Disturbance, OutOfRange, Real, State, is_within};
+use model::{Command, Disturbance, OutOfRange, Real, State, Uav, is_within};
+use nalgebra::Vector3;
 
 use crate::error::Refused;
 use crate::flight::approach::{ApproachLimits, Pace};
+use crate::flight::cable::{Cable, Watching};
 use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
-use crate::law::hold::Hold;
+use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
+use crate::flight::payload::Payload;
+use crate::law::hold::{Hold, swing};
 use crate::law::margins::{Margin, Margins};
 use crate::law::solution::Solution;
 use crate::law::{Ahead, Law};
-use crate::ranges::{CALM, COAST, DESCENT, PAYLOAD_LOST, SINK};
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
-use nalgebra::Vector3;
 
 /// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as the rotors can, goes first.
 const JOINING_THRUST: f64 = 0.75;
-/// How long the payload must seem lost, s: longer than a swing's or a gust's unloading.
-const UNLOADED: f64 = 0.5;
+/// With the load on the ground the UAV waits, s, then goes this far aside, m, at this speed, m/s, and lands beside it.
+const SETTLED: f64 = 0.5;
+const ASIDE: f64 = 0.6;
+const ASIDE_SPEED: f64 = 0.4;
+/// A take-off rises at this speed, m/s, until the UAV is this much higher than the cable is long, m.
+const RISING: f64 = 0.4;
+const CLEAR: f64 = 1.0;
 /// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any descent.
 const GROUNDED: f64 = 1.5;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
@@ -26,157 +33,42 @@ const CALM_SPEED: f64 = 1.0;
 const CALM_SWING: f64 = 0.3;
 const CALM_TILT: f64 = 0.95;
 
-/// What the vehicle is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Mode {
-    /// Rotors off.
-    Off,
-    /// Armed, at least thrust.
-    Idle,
-    /// On the way to the path.
-    Join,
-    /// On the path.
-    Follow,
-    /// At rest, or coming to it.
-    Hold,
-    /// Sinking at [`Policy::descent`].
-    Land,
-    /// No state to fly on.
-    Fault,
-}
-
-/// What the pilot wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Request {
-    /// Rotors off, at once.
-    Off,
-    /// Armed on the ground; in flight the same as [`Hold`](Self::Hold).
-    Idle,
-    /// Along the path.
-    Follow,
-    /// Stop where it is.
-    Hold,
-    /// Sink, and switch off on the ground.
-    Land,
-}
-
-/// Why the vehicle is not doing what was asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum Fault {
-    /// There was no state.
-    NoState,
-    /// This part of the state is not a number, or out of any range.
-    State(Channel),
-    /// This margin is beyond its limit.
-    Margin(Margin),
-    /// The law's answer was not finite.
-    NotFinite,
-    /// No point of the path was found from here.
-    NoPath,
-    /// The payload is gone.
-    PayloadLost,
-}
-
-/// What to do without a state.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lost<T> {
-    /// Cut the rotors; only [`Request::Off`] leaves the fault.
-    Cut,
-    /// Sink with this share of the hover thrust, 0 to 1, and no torque; a good state again leads to hold.
-    Sink(T),
-}
-
-/// What is done when.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Policy<T> {
-    /// How long the last command goes on without a good state, s.
-    pub coast: T,
-    /// What comes after that.
-    pub lost: Lost<T>,
-    /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the vehicle has been calm.
-    pub resume: bool,
-    /// How long the vehicle must have been calm before it rejoins, s.
-    pub calm: T,
-    /// Speed of a landing, m/s.
-    pub descent: T,
-    /// Share of the payload's mass below which it counts as lost.
-    pub payload_lost: T,
-}
-
-impl<T: Real> Default for Policy<T> {
-    /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second; landing at 0.5 m/s; lost below 30 %.
-    fn default() -> Self {
-        Self {
-            coast: COAST.default(),
-            lost: Lost::Sink(SINK.default()),
-            resume: true,
-            calm: CALM.default(),
-            descent: DESCENT.default(),
-            payload_lost: PAYLOAD_LOST.default(),
-        }
-    }
-}
-
-impl<T: Real> Policy<T> {
-    fn check(&self) -> Result<(), OutOfRange<T>> {
-        COAST.check(self.coast)?;
-        CALM.check(self.calm)?;
-        DESCENT.check(self.descent)?;
-        PAYLOAD_LOST.check(self.payload_lost)?;
-        match self.lost {
-            Lost::Cut => Ok(()),
-            Lost::Sink(share) => SINK.check(share),
-        }
-    }
-}
-
-/// What a step answers; what the law had to say to it is in [`Supervisor::solution`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Output<T> {
-    /// Finite and within the limits; nothing at all in [`Mode::Off`].
-    pub command: Command<T>,
-    /// The mode it was made in.
-    pub mode: Mode,
-    /// The last fault since a request changed.
-    pub fault: Option<Fault>,
-    /// A margin past its warning.
-    pub warning: Option<Margin>,
-}
-
 /// A law, supervised: it answers every input. It owns the sampled memory and lends it to the law, or to hold.
 ///
 /// ```text
-///          arm         hold, follow          follow, calm            path reached
-///   OFF ────────▶ IDLE ────────────▶ HOLD ────────────────▶ JOIN ────────────────▶ FOLLOW
-///    ▲                                ▲ ▲                     │                      │
-///    │                                │ └─────────────────────┴──────────────────────┘
-///    │                                │    hold asked for; a margin beyond its limit;
-///    │        land, from any in flight│    an answer not finite; the payload lost
-///    ├─ landed ── LAND ───────────────┤ hold or follow asked for
-///    │                                │
-///    │           FAULT ───────────────┘ a good state again, unless the rotors were cut
+///          arm         hold, follow           risen            follow, calm           path reached
+///   OFF ────────▶ IDLE ────────────▶ TAKE-OFF ───────▶ HOLD ────────────────▶ JOIN ────────────────▶ FOLLOW
+///    ▲              └─ with no navigation of its own ──▶▲ ▲                    │                       │
+///    │                                                  │ └────────────────────┴───────────────────────┘
+///    │                                                  │    hold asked for; a margin beyond its limit; an answer
+///    │                                                  │    not finite; the payload lost; the cable slack
+///    │        land, from any in flight                  │
+///    ├─ landed ── LAND ─────────────────────────────────┤ hold or follow asked for
+///    │                                                  │
+///    │           FAULT ─────────────────────────────────┘ a good state again, unless the rotors were cut
 ///    │             ▲ no good state for longer than [`Policy::coast`], from any in flight:
 ///    │             │ rotors cut, or sinking level, as [`Policy::lost`] says
 ///    └─ off, from anywhere
 /// ```
 ///
-/// What a request, the flight and the state's absence lead to, from each mode, at the next step. The tests read this table and try every field:
+/// What a request, the flight and the state's absence lead to, from each mode. The tests read this table and try every field.
+/// *Load unseen* is a state missing for longer than [`Policy::coast`] while the UAV's own navigation is there, *no state* the
+/// absence of both:
 ///
-/// | mode   | `Off` | `Idle` | `Follow` | `Hold` | `Land` | path reached | margin beyond | payload lost | landed | no state | none for long |
-/// |--------|-------|--------|----------|--------|--------|--------------|---------------|--------------|--------|----------|---------------|
-/// | Off    | Off   | Idle   | Idle     | Idle   | Off    |              |               |              |        | Off      | Off           |
-/// | Idle   | Off   | Idle   | Hold     | Hold   | Off    |              |               |              |        | Idle     | Idle          |
-/// | Join   | Off   | Hold   | Join     | Hold   | Land   | Follow       | Hold          | Hold         |        | Join     | Fault         |
-/// | Follow | Off   | Hold   | Follow   | Hold   | Land   |              | Hold          | Hold         |        | Follow   | Fault         |
-/// | Hold   | Off   | Hold   | Join     | Hold   | Land   |              | Hold          |              |        | Hold     | Fault         |
-/// | Land   | Off   | Hold   | Hold     | Hold   | Land   |              | Land          |              | Off    | Land     | Fault         |
-/// | Fault  | Off   | Hold   | Hold     | Hold   | Hold   |              | Hold          |              |        | Fault    | Fault         |
+/// | mode    | `Off` | `Idle` | `Follow` | `Hold`  | `Land` | risen | path reached | margin beyond | payload lost | cable slack | landed | load unseen | no state | none for long |
+/// |---------|-------|--------|----------|---------|--------|-------|--------------|---------------|--------------|-------------|--------|-------------|----------|---------------|
+/// | Off     | Off   | Idle   | Idle     | Idle    | Off    |       |              |               |              |             |        | Off         | Off      | Off           |
+/// | Idle    | Off   | Idle   | Hold     | Hold    | Off    |       |              |               |              |             |        | Idle        | Idle     | Idle          |
+/// | TakeOff | Off   | Hold   | TakeOff  | TakeOff | Land   | Hold  |              |               |              | TakeOff     |        | TakeOff     | TakeOff  | Fault         |
+/// | Join    | Off   | Hold   | Join     | Hold    | Land   |       | Follow       | Hold          | Hold         | Hold        |        | Hold        | Join     | Fault         |
+/// | Follow  | Off   | Hold   | Follow   | Hold    | Land   |       |              | Hold          | Hold         | Hold        |        | Hold        | Follow   | Fault         |
+/// | Hold    | Off   | Hold   | Join     | Hold    | Land   |       |              | Hold          |              | Hold        |        | Hold        | Hold     | Fault         |
+/// | Land    | Off   | Hold   | Hold     | Hold    | Land   |       |              | Land          |              | Land        | Off    | Land        | Land     | Fault         |
+/// | Fault   | Off   | Hold   | Hold     | Hold    | Hold   |       |              | Hold          |              | Hold        |        | Hold        | Fault    | Fault         |
+///
+/// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold. Hold, landing and take-off fly the
+/// UAV itself and take the cable for a pull; without that navigation they take it for taut, and a load that stands on the ground is
+/// not noticed. A landing sets the load down, goes aside, and sets the UAV down beside it.
 ///
 /// From hold the path is joined at once if follow has just been asked for and the vehicle is inside its envelope, and otherwise after
 /// [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
@@ -190,18 +82,22 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     envelope: Envelope<T>,
     pace: Pace<T>,
     policy: Policy<T>,
-    /// Share of all mass that is left when the payload counts as lost.
-    least_mass: T,
     mode: Mode,
     request: Request,
     fault: Option<Fault>,
     /// The last command was the law's.
     is_by_law: bool,
     hold: Hold<T>,
-    /// Time without a good state, of calm in hold, and without payload, s.
+    cable: Cable<T>,
+    payload: Payload<T>,
+    /// Time since the load has been set down in a landing, s, and the velocity, m/s, with which the UAV then goes aside.
+    set_down: T,
+    aside: Vector3<T>,
+    /// p3 of the UAV when the last take-off, hold or landing began, m.
+    from: T,
+    /// Time without a good state, and of calm in hold, s.
     blind: T,
     calm: T,
-    unloaded: T,
 }
 
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
@@ -216,26 +112,27 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         policy: Policy<T>,
     ) -> Result<Self, OutOfRange<T>> {
         let (law, sampler) = controller.into_parts();
-        let vehicle = *sampler.vehicle();
+        let (vehicle, period) = (*sampler.vehicle(), sampler.period());
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
-        let params = vehicle.params();
-        let least_mass = (params.uav_mass + params.payload_mass * policy.payload_lost) / vehicle.total_mass();
         Ok(Self {
             sampler,
             law,
             envelope: Envelope::new(&vehicle, &envelope)?,
             pace,
             policy,
-            least_mass,
             mode: Mode::Off,
             request: Request::Off,
             fault: None,
             is_by_law: false,
-            hold: Hold::from(&vehicle, &State::at_rest(Vector3::zeros())),
+            hold: Hold::from(&Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
+            cable: Cable::new(&vehicle, period),
+            payload: Payload::new(&vehicle, policy.payload_lost),
+            set_down: T::zero(),
+            aside: Vector3::zeros(),
+            from: T::zero(),
             blind: T::zero(),
             calm: T::zero(),
-            unloaded: T::zero(),
         })
     }
 
@@ -278,7 +175,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.sampler.take_over(state, applied)?;
         self.request = Request::Hold;
         self.fault = None;
-        self.enter_hold(state, None);
+        self.begin(state, applied.thrust);
+        self.enter_hold(&Uav::of(state, self.sampler.vehicle()), None);
         Ok(())
     }
 
@@ -289,6 +187,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     pub fn start(&mut self, state: &State<T>, zeta: [T; 4]) -> Result<(), Refused> {
         self.sampler.start(state, zeta)?;
         self.law.restart(state);
+        self.begin(state, self.sampler.applied().thrust);
         self.request = Request::Follow;
         self.fault = None;
         self.mode = Mode::Follow;
@@ -307,6 +206,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// wants.
     #[inline]
     pub fn step(&mut self, sampled: Option<&State<T>>, request: Request) -> Output<T> {
+        self.step_measured(&Measured { state: sampled, uav: None, specific_force: None }, request)
+    }
+
+    /// The same with all that was measured. Where the load is not known but the UAV is, hold flies that after [`Policy::coast`].
+    #[inline]
+    pub fn step_measured(&mut self, measured: &Measured<'_, T>, request: Request) -> Output<T> {
         if request != self.request {
             self.request = request;
             self.fault = None;
@@ -316,35 +221,124 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             self.mode = Mode::Off;
         }
         self.is_by_law = false;
-        let sampled = match sampled {
-            None => return self.without_state(Fault::NoState),
-            Some(sampled) => match sampled.check() {
-                Err(channel) => return self.without_state(Fault::State(channel)),
-                Ok(()) => sampled,
+        let uav = measured.uav.filter(|uav| uav.check().is_ok());
+        let fault = match measured.state {
+            None => Fault::NoState,
+            Some(state) => match state.check() {
+                Err(channel) => Fault::State(channel),
+                Ok(()) => return self.with_load(state, uav, measured.specific_force),
             },
+        };
+        match uav {
+            Some(uav) => self.without_load(fault, uav, measured.specific_force),
+            None => self.without_state(fault),
+        }
+    }
+
+    /// A step on a good state.
+    #[inline]
+    fn with_load(&mut self, state: &State<T>, uav: Option<&Uav<T>>, specific: Option<Vector3<T>>) -> Output<T> {
+        let length = self.sampler.vehicle().params().rod_length;
+        let velocity = match uav {
+            Some(uav) => uav.velocity,
+            None => state.velocity - state.rod_rate * length,
         };
         if self.blind > T::zero() {
             self.blind = T::zero();
-            self.sampler.resume(sampled);
+            self.sampler.resume(state);
+            self.cable.resume(&velocity);
         }
-        self.change_mode(sampled);
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
+        if let Some(uav) = uav {
+            let line = state.position - uav.position;
+            self.cable.watch(self.sampler.vehicle(), Some(line), self.watching());
+        }
+        self.change_mode(Some(state), uav);
         match self.mode {
             // In fault with a good state: the rotors were cut.
-            Mode::Off | Mode::Fault => self.ground(sampled, T::zero()),
-            Mode::Idle => self.ground(sampled, self.sampler.actuation().least_thrust()),
-            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land => self.fly(sampled),
+            Mode::Off | Mode::Fault => self.ground(Some(state), T::zero()),
+            Mode::Idle => self.ground(Some(state), self.sampler.actuation().least_thrust()),
+            _ => self.fly(state, uav),
         }
+    }
+
+    /// A step on the UAV alone.
+    #[cold]
+    fn without_load(&mut self, fault: Fault, uav: &Uav<T>, specific: Option<Vector3<T>>) -> Output<T> {
+        self.fault = Some(fault);
+        self.blind += self.sampler.period();
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &uav.velocity, &uav.attitude, thrust, specific);
+        self.cable.watch(self.sampler.vehicle(), None, self.watching());
+        let is_by_law = matches!(self.mode, Mode::Join | Mode::Follow);
+        if is_by_law && self.blind <= self.policy.coast {
+            let command = self.sampler.coast();
+            return self.output(command, None);
+        }
+        if is_by_law {
+            self.enter_hold(uav, None);
+        }
+        self.change_mode(None, Some(uav));
+        match self.mode {
+            Mode::Off | Mode::Fault => self.ground(None, T::zero()),
+            Mode::Idle => self.ground(None, self.sampler.actuation().least_thrust()),
+            _ => self.hold(None, uav),
+        }
+    }
+
+    /// How the cable is looked at in the mode that there is.
+    fn watching(&self) -> Watching {
+        match self.mode {
+            Mode::Off | Mode::Idle | Mode::TakeOff => Watching::Not,
+            Mode::Land => Watching::Against,
+            _ => Watching::Learning,
+        }
+    }
+
+    /// Forgets what was known of cable and payload, at `state` under `thrust`.
+    #[inline(never)]
+    fn begin(&mut self, state: &State<T>, thrust: T) {
+        self.cable.begin(self.sampler.vehicle(), state, thrust);
+        self.payload.begin();
     }
 
     /// By the law, or by hold.
     #[inline]
-    fn fly(&mut self, sampled: &State<T>) -> Output<T> {
-        let ahead = self.sampler.sample(sampled);
-        if matches!(self.mode, Mode::Join | Mode::Follow) {
-            self.follow(sampled, &ahead)
-        } else {
-            self.hold(sampled, &ahead.state)
+    fn fly(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
+        let is_slack = self.cable.is_slack() || self.mode == Mode::TakeOff;
+        let known = is_slack.then(|| self.sampler.freeze(state));
+        let ahead = self.sampler.sample(state);
+        if let Some(known) = known {
+            self.sampler.keep(known);
+            return self.fly_slack(state, uav);
         }
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
+            self.follow(state, uav, &ahead)
+        } else {
+            self.hold_at(state, uav)
+        }
+    }
+
+    /// With a cable that does not pull no law flies, and the observers keep what they know.
+    #[cold]
+    fn fly_slack(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
+            self.enter_hold(&self.now(state, uav), Some(Fault::Slack));
+        }
+        self.hold_at(state, uav)
+    }
+
+    /// The UAV by its own navigation, or from `state` with a taut cable.
+    #[inline(never)]
+    fn now(&self, state: &State<T>, uav: Option<&Uav<T>>) -> Uav<T> {
+        uav.copied().unwrap_or_else(|| Uav::of(state, self.sampler.vehicle()))
+    }
+
+    #[inline(never)]
+    fn hold_at(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
+        let now = self.now(state, uav);
+        self.hold(Some(state), &now)
     }
 
     /// `command` in the mode, and with the fault, that there is now.
@@ -353,55 +347,81 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     }
 
     /// On the ground: no law, no torque.
-    #[cold]
-    fn ground(&mut self, sampled: &State<T>, thrust: T) -> Output<T> {
+    #[inline(never)]
+    fn ground(&mut self, state: Option<&State<T>>, thrust: T) -> Output<T> {
         let command = Command::of_thrust(thrust);
-        self.sampler.stand(sampled, command);
+        match state {
+            Some(state) => {
+                self.sampler.stand(state, command);
+                self.begin(state, thrust);
+            }
+            None => self.sampler.rest(command),
+        }
         self.output(command, None)
     }
 
     /// The edges that requests and good states open: the table's rows.
-    fn change_mode(&mut self, sampled: &State<T>) {
+    fn change_mode(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) {
         let to = match (self.mode, self.request) {
             (Mode::Off, Request::Off | Request::Land) => Mode::Off,
             (Mode::Off, _) => Mode::Idle,
             (Mode::Idle, Request::Off | Request::Idle) => Mode::Idle,
             (Mode::Idle, Request::Land) => Mode::Off,
+            (Mode::Idle, _) if uav.is_some() => Mode::TakeOff,
             (Mode::Idle, _) => Mode::Hold,
-            (Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
+            (Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
+            (Mode::TakeOff, Request::Follow | Request::Hold) if !self.has_risen(uav) => Mode::TakeOff,
             (Mode::Join, Request::Follow) if self.law.approach().is_active() => Mode::Join,
             (Mode::Join | Mode::Follow, Request::Follow) => Mode::Follow,
-            (Mode::Hold, Request::Follow) if self.may_follow() => Mode::Join,
+            (Mode::Hold, Request::Follow) if state.is_some() && self.may_follow() => Mode::Join,
             (Mode::Fault, _) if self.policy.lost == Lost::Cut => Mode::Fault,
             _ => Mode::Hold,
         };
         if to == self.mode {
             return;
         }
-        match to {
-            Mode::Join => self.join(sampled),
-            Mode::Hold | Mode::Land => {
-                self.enter_hold(sampled, None);
-                self.mode = to;
+        match (to, state, uav) {
+            (Mode::Join, Some(state), _) => self.join(state, uav),
+            (Mode::TakeOff | Mode::Hold | Mode::Land, _, Some(uav)) => self.change_to(to, uav),
+            (Mode::TakeOff | Mode::Hold | Mode::Land, Some(state), None) => {
+                self.change_to(to, &self.now(state, None));
             }
             _ => self.mode = to,
         }
     }
 
+    #[inline(never)]
+    fn change_to(&mut self, mode: Mode, uav: &Uav<T>) {
+        if self.mode == Mode::TakeOff {
+            // What pulls now is the usual.
+            self.cable.learn();
+        }
+        self.enter_hold(uav, None);
+        self.mode = mode;
+        self.from = uav.position.z;
+    }
+
+    /// Whether a take-off is over.
+    #[cold]
+    fn has_risen(&self, uav: Option<&Uav<T>>) -> bool {
+        let enough = self.sampler.vehicle().params().rod_length + T::lit(CLEAR);
+        uav.is_some_and(|uav| self.from - uav.position.z > enough)
+    }
+
     /// Joins the path, if the vehicle is where the law can fly it.
     #[cold]
-    fn join(&mut self, sampled: &State<T>) {
+    fn join(&mut self, state: &State<T>, uav: Option<&Uav<T>>) {
         let falling = self.sampler.applied().thrust < self.sampler.vehicle().hover_thrust() * T::lit(JOINING_THRUST);
-        if falling || self.standing(sampled) != Standing::Inside {
+        if falling || self.standing(state) != Standing::Inside {
             return;
         }
-        match self.law.join(sampled, &self.pace) {
+        match self.law.join(state, &self.pace) {
             Ok(()) => {
-                self.sampler.carry_on(sampled);
+                self.sampler.carry_on(state);
                 self.mode = Mode::Join;
             }
             Err(Refused::Searching) => {}
-            Err(_) => self.enter_hold(sampled, Some(Fault::NoPath)),
+            Err(_) => self.enter_hold(&self.now(state, uav), Some(Fault::NoPath)),
         }
     }
 
@@ -414,24 +434,26 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     fn may_follow(&self) -> bool {
         self.fault != Some(Fault::PayloadLost)
+            && !self.cable.is_slack()
             && self.calm >= self.policy.calm
             && (self.policy.resume || self.fault.is_none())
     }
 
-    #[cold]
-    fn enter_hold(&mut self, sampled: &State<T>, fault: Option<Fault>) {
-        self.hold = Hold::from(self.sampler.vehicle(), sampled);
+    #[inline(never)]
+    fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
+        self.hold = Hold::from(uav);
         self.sampler.soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
-        self.unloaded = T::zero();
+        self.payload.leave();
+        self.set_down = T::zero();
         self.fault = fault.or(self.fault);
     }
 
     /// The law's command for when it acts, if its answer can be flown; hold's, if not.
     // Apart, and so is hold: neither needs the other's stack.
     #[inline(never)]
-    fn follow(&mut self, sampled: &State<T>, ahead: &Ahead<T>) -> Output<T> {
+    fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>, ahead: &Ahead<T>) -> Output<T> {
         self.sampler.ask(&mut self.law, ahead);
         let solution = self.law.solution();
         let standing = self.envelope.assess(&solution.margins, self.law.approach().path_det());
@@ -439,14 +461,14 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             Some(Fault::Margin(margin))
         } else if !solution.is_finite() {
             Some(Fault::NotFinite)
-        } else if self.payload_is_lost(ahead) {
+        } else if self.payload.is_lost(self.law.solution().margins.lambda, self.along(ahead), self.sampler.period()) {
             Some(Fault::PayloadLost)
         } else {
             None
         };
         if fault.is_some() {
-            self.enter_hold(sampled, fault);
-            return self.hold(sampled, &ahead.state);
+            self.enter_hold(&self.now(state, uav), fault);
+            return self.hold_at(state, uav);
         }
         let command = self.sampler.accept(&mut self.law);
         self.is_by_law = true;
@@ -454,28 +476,71 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.output(command, warning)
     }
 
-    /// Hold's command for when it acts, at `state`, from what is `sampled` now.
-    #[cold]
-    fn hold(&mut self, sampled: &State<T>, state: &State<T>) -> Output<T> {
+    /// d·q.
+    #[inline]
+    fn along(&self, ahead: &Ahead<T>) -> T {
+        self.sampler.disturbance().payload.dot(&ahead.state.rod)
+    }
+
+    /// Hold's command for when it acts, from the UAV and what is known of the rod now.
+    #[inline(never)]
+    fn hold(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Output<T> {
         let period = self.sampler.period();
-        let (vehicle, disturbance) = (self.sampler.vehicle(), self.sampler.disturbance());
-        let descent = if self.mode == Mode::Land { self.policy.descent } else { T::zero() };
-        let wanted = self.hold.step(vehicle, state, disturbance, descent, period);
-        if self.mode == Mode::Land && self.hold.left_above(vehicle, sampled) > T::lit(GROUNDED) {
+        let velocity = self.wanted_velocity(state, now);
+        let vehicle = self.sampler.vehicle();
+        let (zero, pull) = (Vector3::zeros(), self.cable.pull(vehicle));
+        let swing = state.filter(|_| !self.cable.is_slack()).map_or(zero, |state| swing(vehicle, state));
+        let uav = self.sampler.look_ahead(now, &pull);
+        let wanted = self.hold.step(vehicle, &uav, &pull, &swing, &velocity, period);
+        if self.mode == Mode::Land && self.hold.left_above(now) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
             self.request = Request::Off;
-            return self.ground(sampled, T::zero());
+            return self.ground(state, T::zero());
         }
-        let is_calm = is_within(&sampled.velocity, T::lit(CALM_SPEED * CALM_SPEED))
-            && is_within(&sampled.rod_rate, T::lit(CALM_SWING * CALM_SWING))
-            && sampled.attitude.m33 > T::lit(CALM_TILT);
+        let is_calm = state.is_some_and(|state| {
+            is_within(&state.velocity, T::lit(CALM_SPEED * CALM_SPEED))
+                && is_within(&state.rod_rate, T::lit(CALM_SWING * CALM_SWING))
+                && state.attitude.m33 > T::lit(CALM_TILT)
+        });
         self.calm = if is_calm { self.calm + period } else { T::zero() };
-        let warning = match self.standing(sampled) {
-            Standing::Inside => None,
-            Standing::Warning(margin) | Standing::Beyond(margin) => Some(margin),
+        let warning = match state.map(|state| self.standing(state)) {
+            None | Some(Standing::Inside) => None,
+            Some(Standing::Warning(margin) | Standing::Beyond(margin)) => Some(margin),
         };
         let command = self.sampler.commit(wanted, T::zero(), T::zero());
         self.output(command, warning)
+    }
+
+    /// The velocity that hold goes for: none, or that of a take-off, or that of a landing, the load down first and then the UAV beside it.
+    #[inline(never)]
+    fn wanted_velocity(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Vector3<T> {
+        match self.mode {
+            Mode::Land => {}
+            Mode::TakeOff => return Vector3::new(T::zero(), T::zero(), T::lit(-RISING)),
+            _ => return Vector3::zeros(),
+        }
+        let sinking = Vector3::new(T::zero(), T::zero(), self.policy.descent);
+        if !self.cable.is_slack() {
+            self.set_down = T::zero();
+            return sinking;
+        }
+        if self.set_down == T::zero() {
+            // Away from the load, or forward.
+            let away = state.map_or_else(Vector3::zeros, |state| now.position - state.position);
+            let forward: Vector3<T> = now.attitude.column(0).into();
+            let level = |v: Vector3<T>| Vector3::new(v.x, v.y, T::zero());
+            let away = level(away);
+            let aside = if is_within(&away, T::lit(0.05 * 0.05)) { level(forward) } else { away };
+            self.aside = aside * (T::lit(ASIDE_SPEED) / aside.dot(&aside).sqrt().max(T::lit(1e-3)));
+        }
+        self.set_down += self.sampler.period();
+        if self.set_down < T::lit(SETTLED) {
+            Vector3::zeros()
+        } else if self.set_down < T::lit(SETTLED + ASIDE / ASIDE_SPEED) {
+            self.aside
+        } else {
+            sinking
+        }
     }
 
     /// A step without a good state.
@@ -486,7 +551,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let command = match self.mode {
             Mode::Off => Command::zero(),
             Mode::Idle => Command::of_thrust(self.sampler.actuation().least_thrust()),
-            Mode::Join | Mode::Follow | Mode::Hold | Mode::Land if self.blind <= self.policy.coast => {
+            Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold | Mode::Land
+                if self.blind <= self.policy.coast =>
+            {
                 self.sampler.coast()
             }
             _ => {
@@ -501,15 +568,5 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             }
         };
         self.output(command, None)
-    }
-
-    /// Whether the payload's mass has been implied to be next to nothing for a while: M = M₀ λ/(λ + d·q), both sides negative.
-    #[inline]
-    fn payload_is_lost(&mut self, ahead: &Ahead<T>) -> bool {
-        let lambda = self.law.solution().margins.lambda;
-        let along = self.sampler.disturbance().payload.dot(&ahead.state.rod);
-        let lost = lambda > self.least_mass * (lambda + along);
-        self.unloaded = if lost { self.unloaded + self.sampler.period() } else { T::zero() };
-        self.unloaded > T::lit(UNLOADED)
     }
 }

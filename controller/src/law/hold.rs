@@ -1,27 +1,24 @@
-//! The law to fall back on: brings UAV and payload to rest and keeps their altitude, from any state
-//! whatever.
+//! The law to fall back on: brings the UAV to rest and keeps its altitude, from any state whatever, with nothing but its own
+//! position, velocity, attitude and rates. It knows no cable: what hangs from the UAV is an [observed](crate::sampled::pull)
+//! pull f, which has a sign and a bound, so that neither a slack cable nor a wrong rod can mislead it.
 //!
-//! It steers the UAV, at r = p − L q, and divides by nothing that can vanish. With D = d − L δ
-//! the disturbances' part in r̈, the force f = T b3 that gives the UAV an acceleration a is, from
-//! (12.1),
+//! The force T b3 that gives the UAV an acceleration a is
 //!
 //! ```text
-//! f = m_Q u + m_L (q·u) q,   u = g e3 + D − a + (m_L/M) L |q̇|² q               (14.1)
-//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇   (14.2)
-//! ω̇ = k_R θ − k_ω ω,   T = f·b3                                                    (14.3)
+//! T b3 = m_Q (g e3 + f − a)
+//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇     (the last, level and only while the rod is trusted)
+//! ω̇ = k_R θ − k_ω ω,   T = f·b3,   T b3 within a cone about e3, θ the rotation from b3 to it
 //! ```
 //!
-//! with f within a cone about e3, θ the rotation from b3 to it, and only the level part of k_s L
-//! q̇: to yield to the swing damps it. So the rod's pull on the UAV is made good whatever its
-//! direction, up to the thrust there is. The target r* starts at the UAV and at its level velocity,
-//! which it loses within [`BRAKING`]; a fall is stopped as hard as the rotors can.
+//! The target r* starts at the UAV and at its level velocity, which it loses within [`BRAKING`]; a fall is stopped as hard as
+//! the rotors can.
 
-use model::{Command, Disturbance, Real, State, Vehicle};
+use model::{Command, Real, State, Uav, Vehicle};
 use nalgebra::Vector3;
 
 /// Time constant with which the target loses the UAV's level velocity, s.
 const BRAKING: f64 = 1.0;
-/// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles at −0.27 ± 0.36 j and −1.45.
+/// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles near −0.5, −0.75 ± 0.2 j.
 const POSITION_GAIN: f64 = 1.0;
 const VELOCITY_GAIN: f64 = 2.0;
 const INTEGRAL_GAIN: f64 = 0.3;
@@ -29,22 +26,18 @@ const INTEGRAL_GAIN: f64 = 0.3;
 const SWING_GAIN: f64 = 0.8;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
-/// Faster than this, m/s, the integral waits, since a transient is no steady error; and it stays
-/// below this, m/s².
+/// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it stays below this, m/s².
 const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
+/// Tangent of the cone's angle, 35°.
+const CONE: f64 = 0.7;
+/// Vertical force: at least this share of the UAV's weight, at most this of all weight.
+const LEAST_LIFT: f64 = 0.4;
+const MOST_LIFT: f64 = 2.0;
 /// A rod that stands on its head, within 8°, may be in balance: an acceleration, m/s², topples it.
 const BALANCED: f64 = -0.99;
 const TOPPLING: f64 = 0.5;
-/// Largest disturbance that is made good, as a share of g: estimates of a tumbling vehicle are not
-/// to be trusted further.
-const DISTURBANCE_BOUND: f64 = 0.5;
-/// Tangent of the cone's angle, 35°.
-const CONE: f64 = 0.7;
-/// Vertical force between these shares of the weight.
-const LEAST_LIFT: f64 = 0.4;
-const MOST_LIFT: f64 = 2.0;
-/// k_R, 1/s², and k_ω, 1/s: 8 rad/s, critically damped; yaw rate, 1/s.
+/// k_R, 1/s², and k_ω, 1/s: 6 rad/s, critically damped; yaw rate, 1/s.
 const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
@@ -53,69 +46,60 @@ const YAW_RATE_GAIN: f64 = 3.0;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold<T> {
     target: Vector3<T>,
+    /// What the target's rounding has left out: its steps may be smaller than its last digit.
+    remainder: Vector3<T>,
     velocity: Vector3<T>,
     integral: Vector3<T>,
 }
 
 impl<T: Real> Hold<T> {
-    /// From where `state` is and as fast as it is.
-    pub(crate) fn from(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
-        let length = vehicle.params().rod_length;
+    /// From where the UAV is and as fast as it is.
+    pub(crate) fn from(uav: &Uav<T>) -> Self {
         Self {
-            target: state.position - state.rod * length,
-            velocity: level(&(state.velocity - state.rod_rate * length)),
+            target: uav.position,
+            remainder: Vector3::zeros(),
+            velocity: level(&uav.velocity),
             integral: Vector3::zeros(),
         }
     }
 
-    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
-    /// that the ground carries it.
-    pub(crate) fn left_above(&self, vehicle: &Vehicle<T>, state: &State<T>) -> T {
-        self.target.z - (state.position.z - state.rod.z * vehicle.params().rod_length)
+    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means that the ground carries it.
+    pub(crate) fn left_above(&self, uav: &Uav<T>) -> T {
+        self.target.z - uav.position.z
     }
 
-    /// The command at `state` against `disturbance`, and the target one `period` (s) on, sinking at
-    /// `descent` (m/s).
+    /// The command at `uav` under a `pull` (m/s², per UAV mass), and the target one `period` (s) on, on its way to `velocity` (N,
+    /// m/s). `swing` is L q̇ of a trusted rod.
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
-        state: &State<T>,
-        disturbance: &Disturbance<T>,
-        descent: T,
+        uav: &Uav<T>,
+        pull: &Vector3<T>,
+        swing: &Vector3<T>,
+        velocity: &Vector3<T>,
         period: T,
     ) -> Command<T> {
         let params = vehicle.params();
-        let State { position, velocity, rod: q, rod_rate: w, attitude, body_rate: omega } = state;
-        let uav = position - q * params.rod_length;
-        let uav_velocity = velocity - w * params.rod_length;
-        let error = limited(&(uav - self.target), T::lit(REACH));
-        let late = uav_velocity - self.velocity;
+        let Uav { position, velocity: uav_velocity, attitude, body_rate: omega } = uav;
+        let error = limited(&(position - self.target), T::lit(REACH));
+        let rate_error = uav_velocity - self.velocity;
         let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
-        let is_settling = late.dot(&late) < T::lit(SETTLING * SETTLING);
+        let is_settling = rate_error.dot(&rate_error) < T::lit(SETTLING * SETTLING);
         if is_settling && integral.dot(&integral) < T::lit(INTEGRAL_BOUND * INTEGRAL_BOUND) {
             self.integral = integral;
         }
-        let swing = level(&(w * params.rod_length));
-        let mut acceleration =
-            swing * T::lit(SWING_GAIN) - error * T::lit(POSITION_GAIN) - late * T::lit(VELOCITY_GAIN) - self.integral;
-        if q.z < T::lit(BALANCED) {
-            acceleration.x += T::lit(TOPPLING);
-        }
+        let acceleration = level(swing) * T::lit(SWING_GAIN)
+            - error * T::lit(POSITION_GAIN)
+            - rate_error * T::lit(VELOCITY_GAIN)
+            - self.integral;
+        self.advance(velocity, period);
 
-        self.target += self.velocity * period;
-        let share = period / T::lit(BRAKING);
-        let mut wanted = self.velocity * (T::one() - share);
-        wanted.z += descent * share;
-        self.velocity = wanted;
-
-        let gravity = params.gravity;
-        let felt = disturbance.payload - disturbance.rod * params.rod_length;
-        let pull = params.payload_mass * vehicle.per_total_mass() * params.rod_length * w.dot(w);
-        let mut needed = limited(&felt, gravity * T::lit(DISTURBANCE_BOUND)) - acceleration + q * pull;
-        needed.z += gravity;
-        let force = needed * params.uav_mass + q * (params.payload_mass * q.dot(&needed));
+        let mut needed = pull - acceleration;
+        needed.z += params.gravity;
+        let force = needed * params.uav_mass;
         let weight = vehicle.hover_thrust();
-        let lift = force.z.clamp(weight * T::lit(LEAST_LIFT), weight * T::lit(MOST_LIFT));
+        let least = params.uav_mass * params.gravity * T::lit(LEAST_LIFT);
+        let lift = force.z.clamp(least, weight * T::lit(MOST_LIFT));
         let sideways = limited(&level(&force), lift * T::lit(CONE));
         let force = Vector3::new(sideways.x, sideways.y, lift);
 
@@ -143,6 +127,24 @@ impl<T: Real> Hold<T> {
             torque: inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)),
         }
     }
+
+    /// The target one `period` on; its velocity is on its way to `wanted`.
+    fn advance(&mut self, wanted: &Vector3<T>, period: T) {
+        let step = self.velocity * period + self.remainder;
+        let target = self.target + step;
+        self.remainder = step - (target - self.target);
+        self.target = target;
+        self.velocity += (wanted - self.velocity) * (period / T::lit(BRAKING));
+    }
+}
+
+/// What the UAV yields to: L q̇ of the rod, or, while that may stand on its head in balance, some motion to topple it.
+pub(crate) fn swing<T: Real>(vehicle: &Vehicle<T>, state: &State<T>) -> Vector3<T> {
+    let mut swing = state.rod_rate * vehicle.params().rod_length;
+    if state.rod.z < T::lit(BALANCED) {
+        swing.x += T::lit(TOPPLING / SWING_GAIN);
+    }
+    swing
 }
 
 /// The level part of `v`.

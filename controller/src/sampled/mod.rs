@@ -5,4 +5,5 @@ pub(crate) mod actuator;
 pub(crate) mod allocation;
 pub(crate) mod controller;
 pub(crate) mod observer;
+pub(crate) mod pull;
 pub(crate) mod sampler;

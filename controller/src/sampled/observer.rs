@@ -221,6 +221,11 @@ impl<T: Real> Observer<T> {
         self.body.predicted = state.body_rate;
     }
 
+    /// Takes `estimate` for what has been found.
+    pub(crate) fn keep(&mut self, estimate: Disturbance<T>) {
+        self.estimate = estimate;
+    }
+
     /// What has been found up to now, as of the next sample.
     pub fn estimate(&self) -> &Disturbance<T> {
         &self.estimate

@@ -8,9 +8,10 @@
 //! that much further: (11.1) to (11.4).
 
 use model::{
-    Command, Disturbance, OutOfRange, Real, State, Vehicle,
+    Command, Disturbance, OutOfRange, Real, State, Uav, Vehicle,
     dynamics::{Model, across, advance, turn},
 };
+use nalgebra::Vector3;
 
 use crate::error::Refused;
 use crate::law::compensator::{continuing, propagate};
@@ -210,6 +211,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.carry_on(state);
     }
 
+    /// `applied` has been applied for long, wherever the vehicle is.
+    pub(crate) fn rest(&mut self, applied: Command<T>) {
+        self.memory.actuators.reset(applied);
+    }
+
     /// Continues what is being applied, with the ζ that does. The first command's step against it
     /// fades.
     #[inline(never)]
@@ -259,6 +265,35 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
         self.memory.actuators.reset(applied);
         self.memory.observer.reset(state);
+    }
+
+    /// Before a sample with a cable that does not pull, of which the observers can make nothing: what they know, to be
+    /// [kept](Self::keep) after it.
+    #[cold]
+    pub(crate) fn freeze(&mut self, sampled: &State<T>) -> Disturbance<T> {
+        self.memory.observer.restart(sampled);
+        *self.memory.observer.estimate()
+    }
+
+    #[cold]
+    pub(crate) fn keep(&mut self, known: Disturbance<T>) {
+        self.memory.observer.keep(known);
+    }
+
+    /// The UAV where its command acts: its own position and velocity, after the time that attitude and body rate look `ahead`.
+    pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
+        let Memory { vehicle, horizon, actuators, observer, .. } = &self.memory;
+        let applied = actuators.applied();
+        let b3: Vector3<T> = uav.attitude.column(2).into();
+        let mut acceleration = force - b3 * (applied.thrust / vehicle.params().uav_mass);
+        acceleration.z += vehicle.params().gravity;
+        let (position, velocity) = advance(&uav.position, &uav.velocity, &acceleration, *horizon);
+        let torque = applied.torque + observer.estimate().torque;
+        let inertia = vehicle.inertia();
+        let spin = (inertia.component_mul(&uav.body_rate).cross(&uav.body_rate) + torque)
+            .component_mul(vehicle.inverse_inertia());
+        let (attitude, body_rate) = turn(&uav.attitude, &uav.body_rate, &spin, *horizon);
+        Uav { position, velocity, attitude, body_rate }
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.

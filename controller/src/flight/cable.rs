@@ -1,0 +1,119 @@
+//! Whether the cable pulls, from the UAV's own motion and, where it is seen, the load's place.
+
+use model::{Real, State, Vehicle, dynamics::lambda, is_within};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::sampled::pull::Pull;
+
+/// The cable is slack when the load is nearer than this share of its length, or when this share of the payload's weight has gone
+/// from the usual pull, for as long as [`SLACKENING`], s.
+const SHORTENED: f64 = 0.9;
+const UNWEIGHTED: f64 = 0.5;
+const SLACKENING: f64 = 0.1;
+/// Time, s, over which the usual pull is averaged.
+const USUAL: f64 = 2.0;
+/// Largest specific force, m/s², that an accelerometer is believed.
+const MOST_SPECIFIC: f64 = 200.0;
+
+/// What the flight says of the cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Watching {
+    /// It is not expected to pull.
+    Not,
+    /// It pulls, and how much is averaged.
+    Learning,
+    /// The load is being set down, which is not to be got used to.
+    Against,
+}
+
+/// The watch on the cable.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cable<T> {
+    period: T,
+    pull: Pull<T>,
+    /// The usual pull along n3, N, and for how long it has been averaged, s, up to [`USUAL`].
+    usual: T,
+    learning: T,
+    /// For how long the cable has seemed slack, s.
+    slackening: T,
+}
+
+impl<T: Real> Cable<T> {
+    pub(crate) fn new(vehicle: &Vehicle<T>, period: T) -> Self {
+        let weight = vehicle.params().payload_mass * vehicle.params().gravity;
+        Self { period, pull: Pull::new(period), usual: weight, learning: T::zero(), slackening: T::zero() }
+    }
+
+    /// Taut at `state` under `thrust`, N.
+    #[inline(never)]
+    pub(crate) fn begin(&mut self, vehicle: &Vehicle<T>, state: &State<T>, thrust: T) {
+        let params = vehicle.params();
+        *self = Self::new(vehicle, self.period);
+        let tension = -params.payload_mass * lambda(vehicle, state, thrust);
+        let force = state.rod * (tension.max(T::zero()) / params.uav_mass);
+        self.pull.start(&(state.velocity - state.rod_rate * params.rod_length), force);
+    }
+
+    /// After periods without the UAV's `velocity`.
+    pub(crate) fn resume(&mut self, velocity: &Vector3<T>) {
+        self.pull.resume(velocity);
+    }
+
+    /// Averages the usual pull anew.
+    pub(crate) fn learn(&mut self) {
+        self.learning = T::zero();
+    }
+
+    /// Ends a period under `thrust`, N, with the UAV's `velocity` and `attitude` and, if it is known, its `specific` force in body
+    /// axes.
+    #[inline]
+    pub(crate) fn sample(
+        &mut self,
+        vehicle: &Vehicle<T>,
+        velocity: &Vector3<T>,
+        attitude: &Matrix3<T>,
+        thrust: T,
+        specific: Option<Vector3<T>>,
+    ) {
+        let b3: Vector3<T> = attitude.column(2).into();
+        match specific {
+            Some(specific) if is_within(&specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC)) => {
+                self.pull.sample_specific(vehicle, velocity, &b3, thrust, &(attitude * specific));
+            }
+            _ => self.pull.sample(vehicle, velocity, &b3, thrust),
+        }
+    }
+
+    /// Looks whether the cable is slack; `line` is from the UAV to the load, m, if that is seen.
+    #[inline(never)]
+    pub(crate) fn watch(&mut self, vehicle: &Vehicle<T>, line: Option<Vector3<T>>, watching: Watching) {
+        let params = vehicle.params();
+        let near = params.rod_length * T::lit(SHORTENED);
+        let is_near = line.is_some_and(|line| is_within(&line, near * near));
+        let down = self.pull.down(vehicle);
+        self.learning = (self.learning + self.period).min(T::lit(USUAL));
+        let is_known = self.learning >= T::lit(USUAL);
+        let is_unweighted = self.usual - down > params.payload_mass * params.gravity * T::lit(UNWEIGHTED);
+        if watching != Watching::Not && (is_near || is_known && is_unweighted) {
+            self.slackening += self.period;
+            return;
+        }
+        self.slackening = T::zero();
+        if watching == Watching::Learning || watching == Watching::Against && !is_known {
+            self.usual += (down - self.usual) * (self.period / self.learning);
+        }
+    }
+
+    pub(crate) fn is_slack(&self) -> bool {
+        self.slackening > T::lit(SLACKENING)
+    }
+
+    /// The pull on the UAV that can be believed, per UAV mass, m/s². Nothing lifts, but rotors that are stronger than told seem
+    /// to: as much as they did with the load.
+    #[inline(never)]
+    pub(crate) fn pull(&self, vehicle: &Vehicle<T>) -> Vector3<T> {
+        let params = vehicle.params();
+        let excess = (self.usual - params.payload_mass * params.gravity) * vehicle.per_total_mass();
+        self.pull.believed(vehicle, excess.min(T::zero()))
+    }
+}

@@ -1,0 +1,99 @@
+//! What pulls at the UAV, observed from its own motion alone: the cable first of all, whatever hangs from it and wherever it
+//! points.
+//!
+//! ```text
+//! v̂˙ = g e3 − (T/m_Q) b3 + f + 2 o e,   f˙ = o² e,   e = v_Q − v̂
+//! ```
+//!
+//! with T the thrust that is applied, discretized with both poles at e^(−o h); or, where an accelerometer tells the specific
+//! force f_B, f follows R f_B + (T/m_Q) b3 with the bandwidth o.
+
+use model::{Real, Vehicle};
+use nalgebra::Vector3;
+
+/// o, rad/s: faster than a swing, slower than noise.
+const BANDWIDTH: f64 = 10.0;
+/// Largest pull that is believed, in payload weights, and how much of it may be level beside what is vertical: a cable pulls
+/// down, wind sideways, and nothing lifts.
+const STRONGEST: f64 = 3.0;
+const LEVEL: f64 = 0.3;
+
+/// The observer of the pull on the UAV.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pull<T> {
+    velocity_gain: T,
+    force_gain: T,
+    follow_gain: T,
+    period: T,
+    /// v̂ at the last sample, and f, both in N.
+    velocity: Vector3<T>,
+    force: Vector3<T>,
+}
+
+impl<T: Real> Pull<T> {
+    pub(crate) fn new(period: T) -> Self {
+        let pole = (-period * T::lit(BANDWIDTH)).exp();
+        let gap = T::one() - pole;
+        Self {
+            velocity_gain: gap * (T::one() + pole),
+            force_gain: gap * gap / period,
+            follow_gain: gap,
+            period,
+            velocity: Vector3::zeros(),
+            force: Vector3::zeros(),
+        }
+    }
+
+    /// Starts at `velocity`, with a pull of `force` (m/s², per UAV mass).
+    pub(crate) fn start(&mut self, velocity: &Vector3<T>, force: Vector3<T>) {
+        self.velocity = *velocity;
+        self.force = force;
+    }
+
+    /// Goes on at `velocity`, with the pull as it is.
+    pub(crate) fn resume(&mut self, velocity: &Vector3<T>) {
+        self.velocity = *velocity;
+    }
+
+    /// Ends a period in which `thrust` (N) acted along −`b3`, with the UAV's sampled `velocity`.
+    #[inline]
+    pub(crate) fn sample(&mut self, vehicle: &Vehicle<T>, velocity: &Vector3<T>, b3: &Vector3<T>, thrust: T) {
+        let params = vehicle.params();
+        let mut acceleration = self.force - b3 * (thrust / params.uav_mass);
+        acceleration.z += params.gravity;
+        let predicted = self.velocity + acceleration * self.period;
+        let error = velocity - predicted;
+        self.velocity = predicted + error * self.velocity_gain;
+        self.force += error * self.force_gain;
+    }
+
+    /// The same where the accelerometer's `specific` force (N, m/s²) is known.
+    pub(crate) fn sample_specific(
+        &mut self,
+        vehicle: &Vehicle<T>,
+        velocity: &Vector3<T>,
+        b3: &Vector3<T>,
+        thrust: T,
+        specific: &Vector3<T>,
+    ) {
+        let pull = specific + b3 * (thrust / vehicle.params().uav_mass);
+        self.force += (pull - self.force) * self.follow_gain;
+        self.velocity = *velocity;
+    }
+
+    /// Its part along n3, N: what hangs from the UAV, less what the rotors give beyond what they are told.
+    pub(crate) fn down(&self, vehicle: &Vehicle<T>) -> T {
+        self.force.z * vehicle.params().uav_mass
+    }
+
+    /// What of it a cable and some wind can be, per UAV mass, m/s², and at least `least` down.
+    pub(crate) fn believed(&self, vehicle: &Vehicle<T>, least: T) -> Vector3<T> {
+        let params = vehicle.params();
+        let weight = params.payload_mass * params.gravity / params.uav_mass;
+        let down = self.force.z.clamp(least, weight * T::lit(STRONGEST));
+        let most = down.max(T::zero()) + weight * T::lit(LEVEL);
+        let level = self.force.x * self.force.x + self.force.y * self.force.y;
+        let share = if level <= most * most { T::one() } else { most / level.sqrt() };
+        Vector3::new(self.force.x * share, self.force.y * share, down)
+    }
+}

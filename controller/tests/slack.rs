@@ -1,0 +1,323 @@
+//! A vehicle with a cable that can go slack, over ground: two bodies, a cable that pulls only, and what the supervisor makes of
+//! them from the UAV's own navigation. The plant here shares no equation with the library's model of a taut rod.
+
+use controller::{
+    ActuatorLimits, ApproachLimits, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains, Matrix3,
+    Measured, Mode, ObserverParams, Path, Policy, Request, Sampling, State, Supervisor, Uav, Vector3, Vehicle,
+    VehicleParams,
+};
+
+type V = Vector3<f64>;
+
+const PERIOD: f64 = 0.002;
+const SUBSTEPS: usize = 20;
+/// Stiffness and damping of cable (N/m, N·s/m) and ground per kg (1/s², 1/s).
+const CABLE: [f64; 2] = [8000.0, 20.0];
+const GROUND: [f64; 2] = [4000.0, 100.0];
+const FRICTION: f64 = 0.6;
+
+/// What flies, and what it is told to be.
+#[derive(Clone, Copy)]
+struct Setting {
+    payload_mass: f64,
+    told_mass: f64,
+    uav_mass: f64,
+    length: f64,
+    /// Of the thrust that is commanded, what acts.
+    thrust: f64,
+    inertia: [f64; 3],
+    /// Force of wind on the UAV along n1, N.
+    wind: f64,
+}
+
+const PAPER: Setting = Setting {
+    payload_mass: 0.5,
+    told_mass: 0.5,
+    uav_mass: 2.5,
+    length: 2.0,
+    thrust: 1.0,
+    inertia: [0.03, 0.03, 0.05],
+    wind: 0.0,
+};
+
+struct World {
+    setting: Setting,
+    load: V,
+    load_velocity: V,
+    uav: Uav<f64>,
+    /// p3 of the ground, m, and how fast each has touched it, m/s.
+    ground: f64,
+    uav_touch: f64,
+    load_touch: f64,
+    tension: f64,
+}
+
+fn norm(v: &V) -> f64 {
+    v.dot(v).sqrt()
+}
+
+/// The ground's force on a body of `mass`, and whether it touches.
+fn ground(p3: f64, position: &V, velocity: &V, mass: f64) -> (V, bool) {
+    let depth = position.z - p3;
+    if depth <= 0.0 {
+        return (V::zeros(), false);
+    }
+    let normal = (mass * (GROUND[0] * depth + GROUND[1] * velocity.z)).max(0.0);
+    let level = V::new(velocity.x, velocity.y, 0.0);
+    let sliding = norm(&level).max(1e-3);
+    (V::new(0.0, 0.0, -normal) - level * (FRICTION * normal / sliding), true)
+}
+
+impl World {
+    /// Hanging at rest from a UAV at `position`, or with the load on the ground `aside` of it.
+    fn new(setting: Setting, uav: V, load: V, ground: f64) -> Self {
+        let uav = Uav { position: uav, velocity: V::zeros(), attitude: Matrix3::identity(), body_rate: V::zeros() };
+        let (uav_touch, load_touch, tension) = (0.0, 0.0, 0.0);
+        Self { setting, load, load_velocity: V::zeros(), uav, ground, uav_touch, load_touch, tension }
+    }
+
+    fn advance(&mut self, command: &Command<f32>) {
+        let Setting { payload_mass, uav_mass, length, thrust, inertia, wind, .. } = self.setting;
+        let dt = PERIOD / SUBSTEPS as f64;
+        let torque: V = command.torque.map(f64::from);
+        let inertia = V::from(inertia);
+        for _ in 0..SUBSTEPS {
+            let line = self.load - self.uav.position;
+            let distance = norm(&line);
+            let along = line / distance;
+            let parting = (self.load_velocity - self.uav.velocity).dot(&along);
+            let stretch = distance - length;
+            self.tension = if stretch > 0.0 { (CABLE[0] * stretch + CABLE[1] * parting).max(0.0) } else { 0.0 };
+            let gravity = V::new(0.0, 0.0, 9.81);
+            let b3: V = self.uav.attitude.column(2).into();
+            let (on_load, load_touches) = ground(self.ground, &self.load, &self.load_velocity, payload_mass);
+            let (on_uav, uav_touches) = ground(self.ground, &self.uav.position, &self.uav.velocity, uav_mass);
+            if load_touches {
+                self.load_touch = self.load_touch.max(self.load_velocity.z);
+            }
+            if uav_touches {
+                self.uav_touch = self.uav_touch.max(self.uav.velocity.z);
+            }
+            let pull = along * self.tension;
+            let on_uav = on_uav + pull + V::new(wind, 0.0, 0.0) - b3 * (f64::from(command.thrust) * thrust);
+            self.load_velocity += (gravity + (on_load - pull) / payload_mass) * dt;
+            self.load += self.load_velocity * dt;
+            self.uav.velocity += (gravity + on_uav / uav_mass) * dt;
+            self.uav.position += self.uav.velocity * dt;
+            if uav_touches {
+                // It stands on legs.
+                self.uav.body_rate = V::zeros();
+                continue;
+            }
+            let rate = self.uav.body_rate;
+            self.uav.body_rate += (torque - rate.cross(&inertia.component_mul(&rate))).component_div(&inertia) * dt;
+            let angle = self.uav.body_rate * dt;
+            let size = norm(&angle);
+            if size > 0.0 {
+                let k = angle / size;
+                let cross = Matrix3::new(0.0, -k.z, k.y, k.z, 0.0, -k.x, -k.y, k.x, 0.0);
+                let turn = Matrix3::identity() + cross * size.sin() + cross * cross * (1.0 - size.cos());
+                self.uav.attitude *= turn;
+            }
+        }
+    }
+}
+
+/// A flight under the supervisor, which sees load and UAV as motion capture does.
+struct Flight<P> {
+    world: World,
+    supervisor: Supervisor<f32, Follow<f32, P>>,
+    /// Whether the load is seen.
+    sees_load: bool,
+}
+
+fn flight(setting: Setting, uav: V, load: V, ground: f64) -> Flight<impl Path<f32>> {
+    let vehicle = Vehicle::new(VehicleParams {
+        payload_mass: setting.told_mass as f32,
+        uav_mass: setting.uav_mass as f32,
+        rod_length: setting.length as f32,
+        inertia: setting.inertia.map(|j| j as f32),
+        gravity: 9.81,
+    })
+    .unwrap();
+    let path = Circle::new(5.0, -10.0).unwrap().at_speed(1.0).unwrap();
+    let hover = vehicle.hover_thrust();
+    let limits = ActuatorLimits { min_thrust: 0.05 * hover, max_thrust: 2.0 * hover, max_torque: [0.1 * hover; 3] };
+    let follower = Follower::new(vehicle, path, Gains::spread(1.0).unwrap(), Sampling::every(PERIOD as f32))
+        .and_then(|follower| follower.with_limits(limits))
+        .and_then(|follower| follower.with_observer(ObserverParams::with_bandwidth(4.0)))
+        .unwrap();
+    let supervisor =
+        Supervisor::new(follower, EnvelopeParams::wide(), ApproachLimits::gentle(), Policy::default()).unwrap();
+    Flight { world: World::new(setting, uav, load, ground), supervisor, sees_load: true }
+}
+
+/// Hanging at `height` m above the ground at p3 = 0.
+fn hanging(setting: Setting, height: f64) -> Flight<impl Path<f32>> {
+    let load = V::new(5.0, 0.0, -height);
+    let stretch = setting.payload_mass * 9.81 / CABLE[0];
+    let mut flight = flight(setting, load - V::new(0.0, 0.0, setting.length + stretch), load, 0.0);
+    let state = flight.state();
+    let hover = (setting.payload_mass + setting.uav_mass) * 9.81 / setting.thrust;
+    flight.supervisor.take_over(&state, Command::of_thrust(hover as f32)).unwrap();
+    flight
+}
+
+impl<P: Path<f32>> Flight<P> {
+    fn uav(&self) -> Uav<f32> {
+        let Uav { position, velocity, attitude, body_rate } = &self.world.uav;
+        Uav {
+            position: position.map(|x| x as f32),
+            velocity: velocity.map(|x| x as f32),
+            attitude: attitude.map(|x| x as f32),
+            body_rate: body_rate.map(|x| x as f32),
+        }
+    }
+
+    fn state(&self) -> State<f32> {
+        self.uav().with_load(self.world.load.map(|x| x as f32), self.world.load_velocity.map(|x| x as f32))
+    }
+
+    fn step(&mut self, request: Request) -> controller::Output<f32> {
+        let (uav, state) = (self.uav(), self.state());
+        let state = self.sees_load.then_some(&state);
+        let output =
+            self.supervisor.step_measured(&Measured { state, uav: Some(&uav), specific_force: None }, request);
+        assert!(output.command.is_finite());
+        self.world.advance(&output.command);
+        output
+    }
+}
+
+#[test]
+fn landing_sets_down_the_load_and_then_the_uav_beside_it() {
+    let heavy = Setting {
+        payload_mass: 10.0,
+        told_mass: 10.0,
+        uav_mass: 25.0,
+        length: 10.0,
+        inertia: [1.5, 1.5, 2.5],
+        ..PAPER
+    };
+    for (name, setting) in [
+        ("0.5 m", Setting { length: 0.5, ..PAPER }),
+        ("2 m", PAPER),
+        ("5 m", Setting { length: 5.0, ..PAPER }),
+        ("15 m", Setting { length: 15.0, ..PAPER }),
+        ("1 kg told 0.5", Setting { payload_mass: 1.0, ..PAPER }),
+        ("thrust 85 %", Setting { thrust: 0.85, ..PAPER }),
+        ("thrust 115 %", Setting { thrust: 1.15, ..PAPER }),
+        ("wind", Setting { wind: 2.0, ..PAPER }),
+        ("25 kg with 10", heavy),
+    ] {
+        let mut flight = hanging(setting, 3.0);
+        for _ in 0..3000 {
+            flight.step(Request::Hold);
+        }
+        let mut landed = None;
+        for step in 0..60_000 {
+            if flight.step(Request::Land).mode == Mode::Off {
+                landed = Some(f64::from(step) * PERIOD);
+                break;
+            }
+        }
+        let World { uav_touch, load_touch, load, uav, .. } = &flight.world;
+        let apart = norm(&(load - uav.position));
+        println!("{name}: load {load_touch:.2}, UAV {uav_touch:.2} m/s, {apart:.2} m apart after {landed:?} s");
+        assert!(landed.is_some(), "{name}: not landed");
+        assert!(*load_touch <= 0.6 && *uav_touch <= 0.6, "{name}: {load_touch} and {uav_touch} m/s");
+        assert!(*uav_touch > 0.0, "{name}: rotors off in the air");
+    }
+}
+
+#[test]
+fn a_load_that_is_not_seen_for_two_seconds_costs_no_height() {
+    let mut flight = hanging(PAPER, 10.0);
+    for _ in 0..5000 {
+        flight.step(Request::Follow);
+    }
+    assert_eq!(flight.supervisor.mode(), Mode::Follow);
+    flight.sees_load = false;
+    let height = flight.world.uav.position.z;
+    let mut lost = 0.0_f64;
+    for step in 0..1000 {
+        let output = flight.step(Request::Follow);
+        lost = lost.max(flight.world.uav.position.z - height);
+        assert_eq!(output.fault, Some(Fault::NoState));
+        assert_eq!(output.mode, if step < 50 { Mode::Follow } else { Mode::Hold }, "step {step}");
+    }
+    println!("{lost:.2} m lost");
+    assert!(lost < 1.0, "{lost} m lost");
+    flight.sees_load = true;
+    for _ in 0..15_000 {
+        flight.step(Request::Follow);
+    }
+    assert_eq!(flight.supervisor.mode(), Mode::Follow);
+}
+
+#[test]
+fn landing_is_as_slow_as_told_whatever_the_altitude() {
+    let mut flight = hanging(PAPER, 3.0);
+    flight.world.ground = 20_000.0;
+    flight.world.load.z -= 10_000.0;
+    flight.world.uav.position.z -= 10_000.0;
+    for _ in 0..20_000 {
+        flight.step(Request::Land);
+    }
+    let sinking = flight.world.uav.velocity.z;
+    // Half an ulp of 10 km, 0.5 mm, in each of the position's samples.
+    assert!((sinking - 0.5).abs() < 0.02, "{sinking} m/s");
+}
+
+#[test]
+fn a_flight_goes_from_ground_to_ground() {
+    for (name, setting) in [
+        ("as told", PAPER),
+        ("0.75 kg told 0.5", Setting { payload_mass: 0.75, ..PAPER }),
+        ("0.25 kg told 0.5", Setting { payload_mass: 0.25, ..PAPER }),
+        ("thrust 85 %", Setting { thrust: 0.85, ..PAPER }),
+        ("thrust 115 %", Setting { thrust: 1.15, ..PAPER }),
+        ("wind", Setting { wind: 2.0, ..PAPER }),
+        ("rope 5 m", Setting { length: 5.0, ..PAPER }),
+    ] {
+        let mut flight = flight(setting, V::new(0.7, 0.0, 0.0), V::zeros(), 0.0);
+        let mut mode = Mode::Off;
+        let (mut jerk, mut modes) = (0.0_f64, Vec::new());
+        let mut fly = |flight: &mut Flight<_>, request, until: &dyn Fn(Mode, usize) -> bool| {
+            for step in 0..100_000 {
+                let output = flight.step(request);
+                if output.mode != mode {
+                    mode = output.mode;
+                    modes.push(mode);
+                }
+                jerk = jerk.max(flight.world.tension);
+                if until(mode, step) {
+                    return;
+                }
+            }
+            panic!("{name}: {request:?} ended in {mode:?} after {modes:?}, {:?}", flight.world.uav);
+        };
+        fly(&mut flight, Request::Idle, &|mode, step| mode == Mode::Idle && step > 500);
+        fly(&mut flight, Request::Hold, &|mode, _| mode == Mode::Hold);
+        let height = -flight.world.load.z;
+        fly(&mut flight, Request::Follow, &|mode, _| mode == Mode::Follow);
+        fly(&mut flight, Request::Follow, &|_, step| step > 5000);
+        let World { load, .. } = &flight.world;
+        let off = (load.x.hypot(load.y) - 5.0).hypot(load.z + 10.0);
+        fly(&mut flight, Request::Land, &|mode, _| mode == Mode::Off);
+        let World { uav_touch, load_touch, .. } = &flight.world;
+        println!(
+            "{name}: {height:.2} m up, tension at most {jerk:.1} N, {:.1} mm off, touching at {load_touch:.2}, {uav_touch:.2}",
+            off * 1e3
+        );
+        assert_eq!(modes, [Mode::Idle, Mode::TakeOff, Mode::Hold, Mode::Join, Mode::Follow, Mode::Land, Mode::Off]);
+        assert!(height > 0.5, "{name}: the load is at {height} m");
+        // The cable becomes taut at no more than the rising speed, 0.4 m/s, which its stiffness turns into w √(k μ); and the load
+        // weighs twice as much in no manoeuvre.
+        let reduced = setting.payload_mass * setting.uav_mass / (setting.payload_mass + setting.uav_mass);
+        let impact = 0.4 * (CABLE[0] * reduced).sqrt();
+        assert!(jerk < impact + 2.0 * setting.payload_mass * 9.81, "{name}: a jerk of {jerk} N");
+        assert!(off < 0.05, "{name}: {off} m");
+        assert!(*load_touch <= 0.6 && *uav_touch <= 0.6, "{name}: {load_touch} and {uav_touch} m/s");
+    }
+}
