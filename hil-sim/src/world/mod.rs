@@ -32,32 +32,54 @@
 //! rotors = { layout = "quad-x", arm_m = 0.3, drag_m = 0.02, max_thrust = 15.0, failure = { rotor = 1, at_s = 9.0, effectiveness = 0.0 } }
 //! sag = { max_thrust = 30.9, during = { at_s = 15.0, for_s = 2.0 } }
 //!
+//! [cable]                           # in place of the rod: pulls only
+//! hook = [0.0, 0.0, 0.2]            # where it hangs, in body axes
+//! ea = 5e3                          # N: k = EA/L; left out: it does not stretch
+//! damping = 2.0                     # N·s/m; of one that does not stretch, restitution = 0.0 instead
+//! hooked = { at_s = 3.0, for_s = 60.0 }      # picked up and dropped; snagged likewise: caught where it is
+//!
+//! [ground]                          # payload and UAV can stand on it; the cable, if none is given, is one that does not stretch
+//! p3 = 0.0
+//! sink = 0.002                      # by a body's own weight, m
+//! damping_ratio = 0.5
+//! friction = 0.5
+//! payload_height = 0.05             # from its centre to its foot, m
+//! feet_below = 0.15                 # of the UAV, m; feet_apart from the middle
+//!
 //! [timing]
 //! jitter = 0.1                      # each control period within ±10 %
 //! missed = 0.01                     # probability that the controller is not called
 //! ```
 
 mod actuators;
+mod body;
+mod cable;
 mod dryden;
 mod environment;
+mod ground;
 pub mod integrate;
 pub mod multibody;
 pub mod random;
 mod rotors;
 mod sensors;
+mod tethered;
 mod timing;
 
 pub use actuators::{ActuatorModel, Actuators, Sag};
+pub use body::{Bodies, Body, Rates};
+pub use cable::Cable;
 pub use dryden::{Dryden, Gusts};
 pub use environment::{Air, Environment, PayloadStep, drag};
+pub use ground::Ground;
 pub use rotors::{Layout, RotorFailure, Rotors};
 pub use sensors::{Channel, SensorModel, Sensors, Window};
+pub use tethered::Tethered;
 pub use timing::Timing;
 
 use controller::{Command, State, Vector3};
 
 use crate::describe::input::{Invalid, within};
-use crate::world::multibody::{Loads, Multibody};
+use crate::world::multibody::Loads;
 use crate::world::random::{Purpose, Stream};
 use witness::plant::VehicleParameters;
 
@@ -71,6 +93,10 @@ fn check(at: &str, field: &str, value: f64, low: f64, high: f64) -> Result<(), I
 pub struct WorldSpec {
     /// The vehicle.
     pub vehicle: VehicleParameters,
+    /// What joins UAV and payload; a massless rigid rod if left out and there is no ground.
+    pub cable: Option<Cable>,
+    /// What both may stand on.
+    pub ground: Option<Ground>,
     /// Forces, air, another payload.
     pub environment: Environment,
     /// The sensors.
@@ -106,7 +132,7 @@ impl Seed {
 #[derive(Clone, Debug)]
 pub struct World {
     spec: WorldSpec,
-    body: Multibody,
+    body: Body,
     actuators: ActuatorModel,
     sensors: SensorModel,
     gusts: Option<Dryden>,
@@ -122,7 +148,16 @@ impl World {
     /// At time 0 in `state`, with `command` acting for long.
     #[must_use]
     pub fn new(spec: &WorldSpec, state: &State<f64>, command: Command<f64>, seed: Seed) -> Self {
-        let body = Multibody::new(spec.vehicle, state);
+        Self::with(spec, Body::new(spec.vehicle, spec.cable, spec.ground, state), command, seed)
+    }
+
+    /// At time 0 with the payload anywhere, on a cable, and with `command` acting for long.
+    #[must_use]
+    pub fn apart(spec: &WorldSpec, bodies: &Bodies, command: Command<f64>, seed: Seed) -> Self {
+        Self::with(spec, Body::apart(spec.vehicle, spec.cable, spec.ground, bodies), command, seed)
+    }
+
+    fn with(spec: &WorldSpec, body: Body, command: Command<f64>, seed: Seed) -> Self {
         let air = spec.environment.air;
         let wind = air.map_or(Vector3::zeros(), |air| Vector3::from(air.wind));
         let gusts = air.and_then(|air| air.gusts);
@@ -149,7 +184,7 @@ impl World {
 
     /// The vehicle as it moves.
     #[must_use]
-    pub fn body(&self) -> &Multibody {
+    pub fn body(&self) -> &Body {
         &self.body
     }
 
@@ -169,7 +204,7 @@ impl World {
         let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
         let mut state = State::at_rest(self.body.state().position);
         state.attitude = controller::Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0);
-        self.body = Multibody::new(*self.body.vehicle(), &state);
+        self.body = Body::new(*self.body.vehicle(), self.spec.cable, self.spec.ground, &state);
     }
 
     /// Passes one control period in which the vehicle is held where it is.
@@ -181,6 +216,7 @@ impl World {
     #[inline]
     pub fn advance(&mut self, command: &Command<f64>) {
         self.step_payload();
+        self.body.set_time(self.t_s);
         if let Some(gusts) = &mut self.gusts {
             let mean = self.spec.environment.air.map_or([0.0; 3], |air| air.wind);
             self.air = Vector3::from(mean) + gusts.step();
@@ -199,6 +235,22 @@ impl World {
     /// Flies a piece of time in which the rotors are told one thing.
     #[inline]
     fn fly(&mut self, piece: f64) {
+        let loads = self.loads();
+        let share = piece / self.spec.period * f64::from(self.spec.substeps);
+        let resolved = piece / self.body.largest_step();
+        let steps = (share.max(resolved) - 1e-6).ceil().max(1.0);
+        let step = piece / steps;
+        for index in 0..steps as u32 {
+            let start = step * f64::from(index);
+            let (actuators, t_s) = (&self.actuators, self.t_s);
+            self.body.advance(step, |t| actuators.at(t_s, start + t), &loads);
+        }
+        self.actuators.pass(piece);
+    }
+
+    /// What the velocities of payload and UAV bring with them now.
+    #[inline]
+    fn loads(&self) -> impl Fn(&Vector3<f64>, &Vector3<f64>) -> Loads + use<> {
         let Environment { payload_force, uav_force, torque, .. } = self.spec.environment;
         let constant = Loads {
             payload_force: Vector3::from(payload_force),
@@ -206,23 +258,22 @@ impl World {
             torque: Vector3::from(torque),
         };
         let (air, [payload_drag, uav_drag]) = (self.air, self.drag);
-        let loads = |payload: &Vector3<f64>, uav: &Vector3<f64>| {
+        move |payload: &Vector3<f64>, uav: &Vector3<f64>| {
             let mut loads = constant;
             if payload_drag > 0.0 || uav_drag > 0.0 {
                 loads.payload_force += drag(payload_drag, &air, payload);
                 loads.uav_force += drag(uav_drag, &air, uav);
             }
             loads
-        };
-        let share = piece / self.spec.period * f64::from(self.spec.substeps);
-        let steps = (share - 1e-6).ceil().max(1.0);
-        let step = piece / steps;
-        for index in 0..steps as u32 {
-            let start = step * f64::from(index);
-            let (actuators, t_s) = (&self.actuators, self.t_s);
-            self.body.advance(step, |t| actuators.at(t_s, start + t), loads);
         }
-        self.actuators.pass(piece);
+    }
+
+    /// Accelerations and the cable's pull now, under what the rotors give.
+    #[must_use]
+    pub fn rates(&self) -> Rates {
+        let bodies = self.body.bodies();
+        let loads = self.loads()(&bodies.velocity, &bodies.uav_velocity);
+        self.body.rates(&self.actuators.at(self.t_s, 0.0), &loads)
     }
 
     fn step_payload(&mut self) {

@@ -136,8 +136,7 @@ impl Multibody {
             let (v, w) = (vector(x, 3), vector(x, 9));
             let loads = loads(&v, &(v - w * vehicle.rod_length));
             let Acceleration { payload, rod, body } = acceleration(vehicle, x, &command(t), &loads);
-            let [q0, q1, q2, q3] = [x[12], x[13], x[14], x[15]].map(|part| 0.5 * part);
-            let [o1, o2, o3] = [x[16], x[17], x[18]];
+            let turn = quaternion_rate([x[12], x[13], x[14], x[15]], &vector(x, 16));
             [
                 v.x,
                 v.y,
@@ -151,11 +150,10 @@ impl Multibody {
                 rod.x,
                 rod.y,
                 rod.z,
-                // Half the quaternion times (0, ω).
-                -q1 * o1 - q2 * o2 - q3 * o3,
-                q0 * o1 + q2 * o3 - q3 * o2,
-                q0 * o2 + q3 * o1 - q1 * o3,
-                q0 * o3 + q1 * o2 - q2 * o1,
+                turn[0],
+                turn[1],
+                turn[2],
+                turn[3],
                 body.x,
                 body.y,
                 body.z,
@@ -183,14 +181,15 @@ impl Multibody {
     }
 }
 
+/// Three coordinates in a row.
 #[inline]
-fn vector(x: &[f64; COORDINATES], first: usize) -> Vector3<f64> {
+pub(super) fn vector(x: &[f64], first: usize) -> Vector3<f64> {
     Vector3::new(x[first], x[first + 1], x[first + 2])
 }
 
 /// |v|²: nalgebra has it for scalars with a standard library behind them only.
 #[inline]
-fn square(v: &Vector3<f64>) -> f64 {
+pub(super) fn square(v: &Vector3<f64>) -> f64 {
     v.dot(v)
 }
 
@@ -252,8 +251,21 @@ pub fn rotation([w, x, y, z]: [f64; 4]) -> Matrix3<f64> {
     )
 }
 
+/// Half the quaternion times (0, ω), ω in body axes.
+#[inline]
+pub(super) fn quaternion_rate(quaternion: [f64; 4], omega: &Vector3<f64>) -> [f64; 4] {
+    let [q0, q1, q2, q3] = quaternion.map(|part| 0.5 * part);
+    let [o1, o2, o3] = [omega.x, omega.y, omega.z];
+    [
+        -q1 * o1 - q2 * o2 - q3 * o3,
+        q0 * o1 + q2 * o3 - q3 * o2,
+        q0 * o2 + q3 * o1 - q1 * o3,
+        q0 * o3 + q1 * o2 - q2 * o1,
+    ]
+}
+
 /// A quaternion (scalar first, unit to within rounding) of a rotation: by the largest of its four parts, as Shepperd (1978).
-fn quaternion(r: &Matrix3<f64>) -> [f64; 4] {
+pub(super) fn quaternion(r: &Matrix3<f64>) -> [f64; 4] {
     // Four times the products of each part with all parts.
     let trace = r.m11 + r.m22 + r.m33;
     let rows = [

@@ -8,7 +8,7 @@ use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
 use crate::study::check::Limits;
-use crate::world::{Actuators, Environment, Sensors, Timing};
+use crate::world::{Actuators, Cable, Environment, Ground, Sensors, Timing};
 use witness::plant::VehicleParameters;
 
 #[derive(Deserialize)]
@@ -25,6 +25,8 @@ struct ScenarioFields {
     reference: Option<toml::Value>,
     initial: Option<toml::Value>,
     obstacle: Option<ObstacleFields>,
+    cable: Option<Cable>,
+    ground: Option<Ground>,
     #[serde(default)]
     environment: Environment,
     #[serde(default)]
@@ -172,6 +174,8 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     let duration_s = within("duration_s", fields.duration_s, 0.01..=DURATION_LIMIT)?;
     let rate_hz = within("controller.rate_hz", fields.controller.rate_hz, 5.0..=10_000.0)?;
     let law = law(&fields.controller, fields.path, fields.reference)?;
+    fields.cable.map_or(Ok(()), |cable| cable.check("cable"))?;
+    fields.ground.map_or(Ok(()), |ground| ground.check("ground"))?;
     fields.environment.check("environment")?;
     fields.sensors.check("sensors", 1.0 / rate_hz)?;
     fields.actuators.check("actuators")?;
@@ -221,6 +225,8 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         vehicle,
         initial,
         obstacle,
+        cable: fields.cable,
+        ground: fields.ground,
         environment: fields.environment,
         sensors: fields.sensors,
         actuators: fields.actuators,

@@ -29,7 +29,8 @@
 //!
 //! Every key, with unit, range and default, is in `docs/scenario.md`, by [`keys`](crate::describe::keys).
 //!
-//! `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described in [`models`](crate::world); `seed` is that of their random numbers.
+//! `[cable]`, `[ground]`, `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described in [`models`](crate::world);
+//! `seed` is that of their random numbers.
 
 mod document;
 mod fields;
@@ -45,7 +46,7 @@ use crate::describe::course::{PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
 use crate::study::check::Limits;
 use crate::world::WorldSpec;
-use crate::world::{Actuators, Environment, Sensors, Timing};
+use crate::world::{Actuators, Cable, Environment, Ground, Sensors, Timing};
 use witness::plant::VehicleParameters;
 
 /// One flight, validated.
@@ -65,6 +66,10 @@ pub struct Scenario {
     pub initial: [f64; 16],
     /// An obstacle that stops the vehicle, if there is one.
     pub obstacle: Option<Obstacle>,
+    /// What joins UAV and payload; the paper's rod if left out and there is no ground.
+    pub cable: Option<Cable>,
+    /// What both may stand on.
+    pub ground: Option<Ground>,
     /// Forces, air, another payload.
     pub environment: Environment,
     /// What the controller sees of the state.
@@ -230,6 +235,8 @@ impl Scenario {
     pub fn world(&self) -> WorldSpec {
         WorldSpec {
             vehicle: self.vehicle,
+            cable: self.cable,
+            ground: self.ground,
             environment: self.environment,
             sensors: self.sensors,
             actuators: self.actuators,
