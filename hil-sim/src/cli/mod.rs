@@ -9,6 +9,7 @@ mod fly;
 mod hil;
 mod load;
 mod many;
+mod plant;
 mod policies;
 mod tune;
 mod view;
@@ -184,6 +185,18 @@ enum Command {
         #[arg(value_name = "FILE", default_value = "out")]
         file: PathBuf,
     },
+    /// Be the world of a scenario for a controller of your own: one JSON command a line in, one JSON
+    /// state a line out.
+    ///
+    /// The state at the start comes first. A line {"thrust": T, "torque": [..]} (N, N·m in body axes) passes one control period, or
+    /// "periods" of them, and is answered with the state then. A bad line gives {"error": "..."}, passes nothing, and makes the exit
+    /// status at the end non-zero.
+    #[command(after_help = plant::EXAMPLES)]
+    Plant {
+        /// A scenario file, or the name of a built-in scenario.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
     /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to connect to.
     #[command(after_help = hil::TARGET_EXAMPLES)]
     Target {
@@ -217,6 +230,7 @@ pub fn run() -> Ended {
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
         Some(Command::View { file }) => view::view(&file),
+        Some(Command::Plant { file }) => plant::step_lines(&file),
         Some(Command::Target { listen }) => hil::target(&common, &listen),
     }
 }

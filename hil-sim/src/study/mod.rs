@@ -6,4 +6,5 @@ pub mod compare;
 pub mod eval;
 pub mod fit;
 mod json;
+pub mod plant;
 pub mod tune;

@@ -86,6 +86,12 @@ impl Ground {
         [stiffness, 2.0 * self.damping_ratio * (stiffness * mass).sqrt()]
     }
 
+    /// p3 of a payload and of a level UAV that stand on it, m.
+    #[must_use]
+    pub fn standing(&self) -> [f64; 2] {
+        [self.payload_height, self.feet_below].map(|height| self.p3 + self.sink - height)
+    }
+
     /// How deep a point at p3 = `down` (m) is in the ground, m; negative is above it.
     #[must_use]
     pub fn depth(&self, down: f64) -> f64 {

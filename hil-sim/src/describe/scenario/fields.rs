@@ -1,6 +1,6 @@
 //! The fields of a scenario file, and their way into a validated [`Scenario`].
 
-use controller::{ActuatorLimits, ObserverParams, VehicleParams};
+use controller::{ActuatorLimits, ObserverParams, State, Vector3, VehicleParams};
 use serde::Deserialize;
 
 use super::gains::{self, GainFields, PoleField};
@@ -8,7 +8,7 @@ use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
 use crate::study::check::Limits;
-use crate::world::{Actuators, Cable, Environment, Ground, Sensors, Timing};
+use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
 use witness::plant::VehicleParameters;
 
 #[derive(Deserialize)]
@@ -140,6 +140,11 @@ struct InitialFields {
     beta_dot: f64,
     body_rate: Option<[f64; 3]>,
     euler_rates: Option<[f64; 3]>,
+    uav_position: Option<[f64; 3]>,
+    #[serde(default)]
+    uav_velocity: [f64; 3],
+    #[serde(default)]
+    standing: bool,
 }
 
 #[derive(Deserialize)]
@@ -182,10 +187,16 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     fields.timing.check("timing")?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
+    let mut bodies = None;
     let (initial, zeta) = match fields.initial {
         None => (initial("initial", &InitialFields::default())?, [0.0; 4]),
         Some(toml::Value::String(word)) if word == "steady" => steady(&law, &vehicle, &flown)?,
-        Some(toml::Value::Table(table)) => (initial("initial", &read("initial", table)?)?, [0.0; 4]),
+        Some(toml::Value::Table(table)) => {
+            let given: InitialFields = read("initial", table)?;
+            let x = initial("initial", &given)?;
+            bodies = apart("initial", &given, &x, &vehicle, fields.cable, fields.ground)?;
+            (x, [0.0; 4])
+        }
         Some(_) => return Err(Invalid::new("initial", "neither \"steady\" nor a table of coordinates")),
     };
     let zeta = fields.controller.zeta.unwrap_or(zeta);
@@ -224,6 +235,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         },
         vehicle,
         initial,
+        bodies,
         obstacle,
         cable: fields.cable,
         ground: fields.ground,
@@ -362,6 +374,44 @@ fn initial(at: &str, fields: &InitialFields) -> Result<[f64; 16], Invalid> {
         (None, rates) => body_rate(phi, psi, all_within(&field("euler_rates"), rates.unwrap_or_default(), 1e3)?),
     };
     Ok([p1, p2, p3, alpha, beta, phi, theta, psi, v1, v2, v3, alpha_dot, beta_dot, o1, o2, o3])
+}
+
+/// Both bodies, where the UAV's place is given: the cable may be slack.
+fn apart(
+    at: &str,
+    fields: &InitialFields,
+    x: &[f64; 16],
+    vehicle: &VehicleParameters,
+    cable: Option<Cable>,
+    ground: Option<Ground>,
+) -> Result<Option<Bodies>, Invalid> {
+    let invalid = |field: &str, message: &str| Invalid::new(format!("{at}.{field}"), message);
+    let Some(uav_position) = fields.uav_position else {
+        let missing = || invalid("standing", "needs initial.uav_position: where the UAV stands beside the payload");
+        return if fields.standing { Err(missing()) } else { Ok(None) };
+    };
+    if cable.is_none() && ground.is_none() {
+        return Err(invalid("uav_position", "needs a [cable] or [ground]: a rod says where the UAV is"));
+    }
+    let state = State::from_paper(x);
+    let mut bodies = Bodies {
+        uav_position: all_within(&format!("{at}.uav_position"), uav_position, 1e5)?.into(),
+        uav_velocity: all_within(&format!("{at}.uav_velocity"), fields.uav_velocity, 1e3)?.into(),
+        ..Bodies::on_rod(&state, vehicle.rod_length)
+    };
+    if fields.standing {
+        let ground = ground.ok_or_else(|| invalid("standing", "needs a [ground] to stand on"))?;
+        [bodies.position.z, bodies.uav_position.z] = ground.standing();
+    }
+    let hook = Vector3::from(cable.unwrap_or_default().hook);
+    let apart = bodies.position - bodies.uav_position - bodies.attitude * hook;
+    let length = apart.dot(&apart).sqrt();
+    let (most, holds) = (vehicle.rod_length * (1.0 + 1e-9), cable.is_none_or(|cable| cable.hooked.is_none()));
+    if holds && cable.is_none_or(|cable| cable.ea.is_none()) && length > most {
+        let message = format!("{length:.3} m from hook to payload on a cable of {} m", vehicle.rod_length);
+        return Err(invalid("uav_position", &message));
+    }
+    Ok(Some(bodies))
 }
 
 /// ω = W⁻¹ (φ̇, θ̇, ψ̇), in body axes: the rates about Rz(ψ)ᵀ e1, Rz(ψ)ᵀ Rx(φ)ᵀ e2 and e3.

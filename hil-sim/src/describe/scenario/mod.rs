@@ -8,6 +8,8 @@
 //! steady_from_s = 100.0          # steady errors are means from here to the end; left out: none
 //! vehicle = { payload_mass = 0.5, uav_mass = 2.5, rod_length = 2.0, inertia = [0.03, 0.03, 0.05], gravity = 9.81 }
 //! initial = { position = [0.0, 9.0, -10.0], alpha = 0.0 }   # any of the paper's coordinates, or "steady": on the path
+//! # On a cable: the UAV anywhere in its reach, and with `standing` both on the ground, whatever their p3.
+//! # initial = { position = [0.5, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true, psi = 0.3 }
 //! limits = { max_thrust = 50.0, tilt_deg = 40.0 }   # of `hil-sim check`, see check::Limits::read
 //! obstacle = { at_s = 5.0, hold_s = 0.0 }
 //! path = { kind = "circle", radius = 5.0, p3 = -10.0, speed = -5.0 }          # law = "follow"
@@ -40,13 +42,13 @@ mod steady;
 
 pub use library::{CURVES, FIGURES, builtin};
 
-use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
+use controller::{ActuatorLimits, Command, Gains, ObserverParams, Sampling, State, TrackGains, VehicleParams};
 
 use crate::describe::course::{PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
 use crate::study::check::Limits;
-use crate::world::WorldSpec;
-use crate::world::{Actuators, Cable, Environment, Ground, Sensors, Timing};
+use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
+use crate::world::{Seed, World, WorldSpec};
 use witness::plant::VehicleParameters;
 
 /// One flight, validated.
@@ -64,6 +66,8 @@ pub struct Scenario {
     pub controller: ControllerSpec,
     /// The paper's 16 coordinates at the start.
     pub initial: [f64; 16],
+    /// Both bodies at the start, where the cable between them may be slack.
+    pub bodies: Option<Bodies>,
     /// An obstacle that stops the vehicle, if there is one.
     pub obstacle: Option<Obstacle>,
     /// What joins UAV and payload; the paper's rod if left out and there is no ground.
@@ -243,6 +247,15 @@ impl Scenario {
             timing: self.timing,
             period: 1.0 / self.controller.rate_hz,
             substeps: self.substeps,
+        }
+    }
+
+    /// The world at the flight's start, with `command` acting for long.
+    #[must_use]
+    pub fn begin(&self, command: Command<f64>, seed: Seed) -> World {
+        match &self.bodies {
+            Some(bodies) => World::apart(&self.world(), bodies, command, seed),
+            None => World::new(&self.world(), &State::from_paper(&self.initial), command, seed),
         }
     }
 
