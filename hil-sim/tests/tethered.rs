@@ -286,7 +286,8 @@ fn a_uav_let_go_of_just_above_the_ground_stands_level_on_its_feet() {
 fn a_lift_converges_through_its_contacts() {
     let ground = Ground::default();
     let fly_it = |steps: u32| {
-        let start = at_rest([0.3, 0.0, ground.sink - ground.payload_height], [0.0, 0.0, ground.sink - ground.feet_below]);
+        let start =
+            at_rest([0.3, 0.0, ground.sink - ground.payload_height], [0.0, 0.0, ground.sink - ground.feet_below]);
         let mut body = Tethered::new(vehicle(), hooked([0.0, 0.0, 0.1]), Some(ground), &start);
         fly(&mut body, thrust(33.0), Loads::none(), 2.0, steps);
         assert_eq!((body.is_taut(), body.touching()), (true, [false; 2]));

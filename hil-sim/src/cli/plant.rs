@@ -6,7 +6,7 @@ use std::io::{self, BufRead, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
-use super::{Ended, fly};
+use super::{Ended, load};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = r#"Examples:
@@ -14,7 +14,7 @@ pub const EXAMPLES: &str = r#"Examples:
 
 /// Answers every line of standard input on standard output, after the state at the start.
 pub fn step_lines(file: &Path) -> Ended {
-    let mut plant = Plant::new(&fly::load_one(file)?);
+    let mut plant = Plant::new(&load::one(file)?);
     let mut code = ExitCode::SUCCESS;
     answer(&plant.now())?;
     let mut input = io::stdin().lock();

@@ -88,12 +88,7 @@ pub enum Body {
 impl Body {
     /// `vehicle` in `state`.
     #[must_use]
-    pub fn new(
-        vehicle: VehicleParameters,
-        cable: Option<Cable>,
-        ground: Option<Ground>,
-        state: &State<f64>,
-    ) -> Self {
+    pub fn new(vehicle: VehicleParameters, cable: Option<Cable>, ground: Option<Ground>, state: &State<f64>) -> Self {
         if cable.is_none() && ground.is_none() {
             return Self::Rod(Multibody::new(vehicle, state));
         }
@@ -102,12 +97,7 @@ impl Body {
 
     /// `vehicle` with its payload anywhere, on a cable.
     #[must_use]
-    pub fn apart(
-        vehicle: VehicleParameters,
-        cable: Option<Cable>,
-        ground: Option<Ground>,
-        bodies: &Bodies,
-    ) -> Self {
+    pub fn apart(vehicle: VehicleParameters, cable: Option<Cable>, ground: Option<Ground>, bodies: &Bodies) -> Self {
         Self::Cable(Tethered::new(vehicle, cable.unwrap_or_default(), ground, bodies))
     }
 

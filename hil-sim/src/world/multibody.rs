@@ -138,25 +138,8 @@ impl Multibody {
             let Acceleration { payload, rod, body } = acceleration(vehicle, x, &command(t), &loads);
             let turn = quaternion_rate([x[12], x[13], x[14], x[15]], &vector(x, 16));
             [
-                v.x,
-                v.y,
-                v.z,
-                payload.x,
-                payload.y,
-                payload.z,
-                w.x,
-                w.y,
-                w.z,
-                rod.x,
-                rod.y,
-                rod.z,
-                turn[0],
-                turn[1],
-                turn[2],
-                turn[3],
-                body.x,
-                body.y,
-                body.z,
+                v.x, v.y, v.z, payload.x, payload.y, payload.z, w.x, w.y, w.z, rod.x, rod.y, rod.z, turn[0], turn[1],
+                turn[2], turn[3], body.x, body.y, body.z,
             ]
         };
         self.x = rk4_step(derivative, 0.0, &self.x, step);

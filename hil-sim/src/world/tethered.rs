@@ -407,9 +407,7 @@ impl Tethered {
         if self.contacts.taut {
             let line = self.line(x);
             pull = match self.cable.ea {
-                Some(ea) => {
-                    (ea / rod_length * (line.length - rod_length) + self.cable.damping * line.rate).max(0.0)
-                }
+                Some(ea) => (ea / rod_length * (line.length - rod_length) + self.cable.damping * line.rate).max(0.0),
                 None => {
                     let hook = Vector3::from(self.cable.hook);
                     let hung = uav + attitude * (body.cross(&hook) + omega.cross(&omega.cross(&hook)));
