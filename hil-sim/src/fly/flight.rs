@@ -6,7 +6,7 @@ use controller::{Command, State, Vector3};
 
 use super::pilot::{Answers, Decision};
 use crate::describe::scenario::Scenario;
-use crate::world::{Seed, World};
+use crate::world::Seed;
 
 /// A flight this far from its path is lost and ends, m; one that starts further off, at twice its distance then.
 pub const LOST_M: f64 = 100.0;
@@ -41,7 +41,7 @@ impl Control<'static> {
 /// How a scenario is flown.
 #[derive(Clone, Copy)]
 pub struct Plan<'a> {
-    /// The state at the start.
+    /// The state at the start, but where the scenario says where both bodies are.
     pub start: State<f64>,
     /// Of everything random.
     pub seed: Seed,
@@ -115,7 +115,7 @@ pub fn fly(
     let controller = &scenario.controller;
     let told = &controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
-    let mut world = World::new(&scenario.world(), &plan.start, hover, plan.seed);
+    let mut world = scenario.begin(&plan.start, hover, plan.seed);
     let period = 1.0 / controller.rate_hz;
     let steps = scenario.steps();
     let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));

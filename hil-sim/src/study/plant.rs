@@ -2,7 +2,7 @@
 //!
 //! What the sensors make of the state, and when the controller misses one, is left out: the answer is the truth.
 
-use controller::{Command, Vector3};
+use controller::{Command, State, Vector3};
 use serde::{Deserialize, Serialize};
 
 use crate::describe::input::{Invalid, all_within, read, within};
@@ -57,7 +57,8 @@ impl Plant {
     /// At the start of `scenario`, the rotors giving nothing.
     #[must_use]
     pub fn new(scenario: &Scenario) -> Self {
-        Self { world: scenario.begin(Command::zero(), Seed { batch: scenario.seed, run: 0 }) }
+        let (start, seed) = (State::from_paper(&scenario.initial), Seed { batch: scenario.seed, run: 0 });
+        Self { world: scenario.begin(&start, Command::zero(), seed) }
     }
 
     /// The world now.

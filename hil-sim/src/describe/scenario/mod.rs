@@ -250,12 +250,13 @@ impl Scenario {
         }
     }
 
-    /// The world at the flight's start, with `command` acting for long.
+    /// The world at the flight's start, with `command` acting for long: in `start`, but where the
+    /// scenario itself says where both bodies are.
     #[must_use]
-    pub fn begin(&self, command: Command<f64>, seed: Seed) -> World {
+    pub fn begin(&self, start: &State<f64>, command: Command<f64>, seed: Seed) -> World {
         match &self.bodies {
             Some(bodies) => World::apart(&self.world(), bodies, command, seed),
-            None => World::new(&self.world(), &State::from_paper(&self.initial), command, seed),
+            None => World::new(&self.world(), start, command, seed),
         }
     }
 
