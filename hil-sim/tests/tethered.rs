@@ -1,5 +1,5 @@
-//! The cable and the ground against balances of energy and momentum, against solutions that can be written down, and against the plant on
-//! the rod.
+//! The cable and the ground against balances of energy and momentum, against solutions that can be
+//! written down, and against the plant on the rod.
 
 use controller::{Command, Matrix3, State, Vector3};
 use hil_sim::world::multibody::{Loads, Multibody, rotation};
@@ -66,7 +66,8 @@ fn taut_and_hung_at_the_centre_of_mass_it_is_the_rod() {
     ];
     let worst = apart.into_iter().fold(0.0, f64::max);
     println!("rod and cable, one second: {worst:.1e}");
-    // Two methods of order 4 whose errors are of order (rate · step)⁴, some 1e-13 a step of half a millisecond, for 2,000 of them.
+    // Two methods of order 4 whose errors are of order (rate · step)⁴, some 1e-13 a step of half a
+    // millisecond, for 2,000 of them.
     assert!(worst < 1e-10, "{worst:e}");
 }
 
@@ -152,14 +153,15 @@ fn becoming_taut_at_a_hook_keeps_both_momenta() {
     });
     assert!(steps.count() < 1000, "taut at last");
     let after = momenta(&body);
-    // Runge-Kutta's error in a spin of 0.6 rad/s, and an instant's overshoot of the cable's length, 1e-10 s at 2 m/s.
+    // Runge-Kutta's error in a spin of 0.6 rad/s, and an instant's overshoot of the cable's length,
+    // 1e-10 s at 2 m/s.
     assert!((after[0] - before[0]).amax() < 1e-12, "{before:?} {after:?}");
     assert!((after[1] - before[1]).amax() < 1e-8, "{before:?} {after:?}");
     assert!(body.energy() < energy - 0.1, "{} of {energy}", body.energy());
 }
 
-/// The stretch under a thrust that begins at once: x = x_s (1 − e^(−ζωt) (cos ω_d t + ζω/ω_d sin ω_d t)), with x_s = T m_L/(M k) the
-/// steady one, ω² = k/μ and ζ = c/(2 μ ω).
+/// The stretch under a thrust that begins at once: x = x_s (1 − e^(−ζωt) (cos ω_d t + ζω/ω_d sin
+/// ω_d t)), with x_s = T m_L/(M k) the steady one, ω² = k/μ and ζ = c/(2 μ ω).
 #[test]
 fn an_elastic_cable_has_the_frequency_and_the_decay_of_its_spring() {
     let VehicleParameters { payload_mass, uav_mass, rod_length, .. } = vehicle();
@@ -219,7 +221,8 @@ fn a_payload_bounces_with_the_restitution_of_spring_and_damper() {
         let restitution = (-damping_ratio / way * turn).exp();
         let ratio = (height / 5.0).sqrt();
         println!("damping ratio {damping_ratio}: rebound {ratio:.4} of the speed, {restitution:.4} without gravity");
-        // The formula neglects the weight, which takes no more than g times half a swing, π/ω, of the speed that leaves.
+        // The formula neglects the weight, which takes no more than g times half a swing, π/ω, of
+        // the speed that leaves.
         let leaving = restitution * (2.0 * G * 5.0_f64).sqrt();
         let neglected = G * std::f64::consts::PI / (G / ground.sink).sqrt() / (way * leaving);
         assert!((ratio / restitution - 1.0).abs() < neglected, "{ratio} {restitution} {neglected}");
@@ -241,7 +244,8 @@ fn an_undamped_bounce_loses_nothing_to_the_order_of_the_method() {
     assert!(errors[2] < 1e-4, "{errors:?}");
 }
 
-/// m v v̇ = −μ m g v²/√(v² + v_0²), so a slide from V takes ∫√(v² + v_0²) dv/(μ g), and all its energy into friction.
+/// m v v̇ = −μ m g v²/√(v² + v_0²), so a slide from V takes ∫√(v² + v_0²) dv/(μ g), and all its
+/// energy into friction.
 #[test]
 fn a_slide_is_as_long_as_coulombs_friction_makes_it() {
     let ground = Ground { friction: 0.4, ..Ground::default() };
@@ -281,7 +285,8 @@ fn a_uav_let_go_of_just_above_the_ground_stands_level_on_its_feet() {
     assert!(end.attitude.m33 > 1.0 - 1e-9 && end.uav_velocity.amax() < 1e-4, "{end:?}");
 }
 
-/// Lifted off the ground by a UAV that rises until the cable is taut: every kind of contact in one flight, the errors of order 4.
+/// Lifted off the ground by a UAV that rises until the cable is taut: every kind of contact in one
+/// flight, the errors of order 4.
 #[test]
 fn a_lift_converges_through_its_contacts() {
     let ground = Ground::default();

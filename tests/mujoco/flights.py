@@ -60,7 +60,7 @@ class Lander:
         rate = np.array((0.0, 0.0, 0.5))
         if self.touched is not None and t > self.touched + 0.5:
             self.wanted[0] = min(self.wanted[0] + 0.5 * case.period, 0.6)
-        # The pull hangs on the cable while the payload does not stand, and is lost with it over a tenth of a second.
+        # The pull of a payload that hangs; once it stands, gone over a tenth of a second.
         hangs = 0.0 if state.on_ground[0] else case.payload_mass * GRAVITY
         self.pull += (hangs - self.pull) * min(1.0, 10.0 * case.period) if t > 0.0 else hangs
         error, late = state.uav_position - self.wanted, state.uav_velocity - rate
@@ -88,11 +88,12 @@ def landing(length, payload_mass=0.5, uav_mass=2.5, inertia=(0.03, 0.03, 0.05), 
     )
 
 
-# Bounds, m, and why: the rod is exact in both, and only two methods of order 4 and the payload's own inertia of 1e-7 kg·m² in
-# MuJoCo are left. An elastic cable is integrated there to first order in 0.1 ms at up to 80 rad/s: some 1e-3 of the way it drives.
-# A limit is an overdamped spring there and a constraint here: a hundredth of the jerk's 4 m/s thrown back, for tenths of a second. On
-# the ground the weight sinks in by 2 mm here and by nothing there, where it does not slow the rebound either: a critically damped fall
-# at 3.3 m/s comes back with exp(-2) of it, 1 cm high at the most.
+# Bounds, m, and why. The rod is exact in both, and only two methods of order 4 and the payload's own
+# inertia of 1e-7 kg·m² in MuJoCo are left. An elastic cable is integrated there to first order in
+# 0.1 ms at up to 80 rad/s: some 1e-3 of the way it drives. A limit is an overdamped spring there and
+# a constraint here: a hundredth of the jerk's 4 m/s thrown back, for hundredths of a second. On the
+# ground the weight sinks in by 2 mm here and by nothing there, where it does not slow the rebound
+# either: a critically damped fall at 3.3 m/s comes back with exp(-2) of it, 1 cm high at the most.
 RIGID, ELASTIC, JERK, GROUND = 1e-4, 1e-3, 1e-3, 2e-2
 ROD = dict(link="rod", step=5e-4)
 

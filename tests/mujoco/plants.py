@@ -129,19 +129,22 @@ class MuJoCo:
             outside, tendon = "", ""
         else:
             inside = ""
-            # The ground's spring and damper, per mass of what stands on it, as MuJoCo's direct format has it; it takes no part
-            # of gravity, so that a body rests at the surface where it sinks in by `sink` in the simulator.
+            # The ground's spring and damper, per mass of what stands on it, in MuJoCo's direct format;
+            # gravity has no part in it, so that a body rests at the surface where it sinks in by
+            # `sink` in the simulator.
             soft = f'"{-GRAVITY / case.sink} {-2 * case.damping_ratio * (GRAVITY / case.sink) ** 0.5}"'
             ball = f'<geom type="sphere" size="{case.payload_height}" mass="0" solref={soft} solimp={FIRM}/>' if case.ground else ""
             outside = f'<body name="payload" pos="{vector(case.position)}"><joint name="payload" type="slide" axis="1 0 0"/>'
             outside += f'<joint type="slide" axis="0 1 0"/><joint type="slide" axis="0 0 1"/>{point}{ball}<site name="payload"/></body>'
             if case.link == "elastic":
-                # Two values of `springlength` are a dead band: the spring pulls beyond the upper one, and nothing pushes below
-                # (XML reference, tendon/spatial). Its damping acts everywhere, so these cases stay taut.
+                # Two values of `springlength` are a dead band: the spring pulls beyond the upper one,
+                # and nothing pushes below (XML reference, tendon/spatial). Its damping acts
+                # everywhere, so these cases stay taut.
                 pull = f'springlength="0 {case.length}" stiffness="{case.ea / case.length}" damping="{case.damping}"'
             else:
-                # A limit with the least time constant that MuJoCo takes, two steps. It is a spring with a damper that does not
-                # push: critically damped it throws an impact back with exp(−2) of its speed, five times that with a hundredth.
+                # A limit with the least time constant that MuJoCo takes, two steps. It is a spring
+                # with a damper that does not push: critically damped it throws an impact back with
+                # exp(-2) of its speed, at five times that with a hundredth.
                 pull = f'limited="true" range="0 {case.length}" solreflimit="{2 * case.step} 5" solimplimit={FIRM}'
             tendon = f'<tendon><spatial name="cable" {pull}><site site="hook"/><site site="payload"/></spatial></tendon>'
         feet, plane = "", ""

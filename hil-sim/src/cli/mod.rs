@@ -188,9 +188,9 @@ enum Command {
     /// Be the world of a scenario for a controller of your own: one JSON command a line in, one JSON
     /// state a line out.
     ///
-    /// The state at the start comes first. A line {"thrust": T, "torque": [..]} (N, N·m in body axes) passes one control period, or
-    /// "periods" of them, and is answered with the state then. A bad line gives {"error": "..."}, passes nothing, and makes the exit
-    /// status at the end non-zero.
+    /// The state at the start comes first. A line {"thrust": T, "torque": [..]} (N, N·m in body axes)
+    /// passes one control period, or "periods" of them, and is answered with the state then. A bad
+    /// line gives {"error": "..."}, passes nothing, and makes the exit status at the end non-zero.
     #[command(after_help = plant::EXAMPLES)]
     Plant {
         /// A scenario file, or the name of a built-in scenario.

@@ -1,10 +1,12 @@
 //! A scenario's world, stepped from any other program: a JSON command a line, a JSON state a line.
 //!
-//! What the sensors make of the state, and when the controller misses one, is left out: the answer is the truth.
+//! What the sensors make of the state, and when the controller misses one, is left out: the answer
+//! is the truth.
 
 use controller::{Command, State, Vector3};
 use serde::{Deserialize, Serialize};
 
+use super::json::Unique;
 use crate::describe::input::{Invalid, all_within, read, within};
 use crate::describe::scenario::Scenario;
 use crate::world::{Bodies, Seed, World};
@@ -83,11 +85,11 @@ impl Plant {
     /// Passes the periods that `line` asks for, under its command.
     ///
     /// # Errors
-    /// [`Invalid`] names the field that is unknown, missing or out of range; nothing has passed then.
+    /// [`Invalid`] names the field that is unknown, missing or out of range; nothing has passed
+    /// then.
     pub fn step(&mut self, line: &[u8]) -> Result<Answer, Invalid> {
-        let mut given = serde_json::Deserializer::from_slice(line);
-        let Request { thrust, torque, periods } = read("", &mut given)?;
-        given.end().map_err(|error| Invalid::new("", error))?;
+        let Unique(value) = serde_json::from_slice(line).map_err(|error| Invalid::new("line", error))?;
+        let Request { thrust, torque, periods } = read("", value)?;
         let thrust = within("thrust", thrust, 0.0..=1e6)?;
         let torque = Vector3::from(all_within("torque", torque, 1e6)?);
         for _ in 0..within("periods", periods, 1..=1_000_000)? {
@@ -137,6 +139,7 @@ mod tests {
             (br#"{"thrust": 1, "torque": [0, 0, 1e9]}"#, "torque[2]"),
             (br#"{"thrust": 1, "periods": 0}"#, "periods"),
             (br#"{"thrust": 1} {"thrust": 1}"#, "trailing"),
+            (br#"{"thrust": 1, "thrust": 2}"#, "thrust"),
             (br#"{"thrust": 1, "colour": 2}"#, "colour"),
         ] {
             let error = plant.step(line).unwrap_err().to_string();

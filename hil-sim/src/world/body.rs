@@ -8,7 +8,8 @@ use super::multibody::{Acceleration, Loads, Multibody, square};
 use super::tethered::Tethered;
 use witness::plant::VehicleParameters;
 
-/// Where payload and UAV are and how they move, in N; the body rate in body axes. The cable between them may be slack.
+/// Where payload and UAV are and how they move, in N; the body rate in body axes. The cable between
+/// them may be slack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bodies {
     /// Of the payload, m.
@@ -77,7 +78,6 @@ pub struct Rates {
 
 /// A vehicle with its payload.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "there is one a flight")]
 pub enum Body {
     /// On a massless rigid rod, far from any ground.
     Rod(Multibody),
@@ -110,7 +110,8 @@ impl Body {
         }
     }
 
-    /// Another payload mass, kg, from now on, all velocities kept: the mass joins or leaves at the payload's velocity.
+    /// Another payload mass, kg, from now on, all velocities kept: the mass joins or leaves at the
+    /// payload's velocity.
     pub fn set_payload_mass(&mut self, mass: f64) {
         match self {
             Self::Rod(body) => body.set_payload_mass(mass),
@@ -215,8 +216,8 @@ impl Body {
         }
     }
 
-    /// Moves on by `step` seconds. `command` gives thrust and torque, and `loads` what the velocities of payload and UAV (N, m/s) bring with
-    /// them, at a time since the step's start.
+    /// Moves on by `step` seconds. `command` gives thrust and torque, and `loads` what the
+    /// velocities of payload and UAV (N, m/s) bring with them, at a time since the step's start.
     #[inline]
     pub fn advance(
         &mut self,

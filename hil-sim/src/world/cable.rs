@@ -8,10 +8,11 @@
 //! elastic       l > L           max(0, k (l − L) + c l̇),   k = EA/L
 //! ```
 //!
-//! An inextensible cable that becomes taut while its ends part at w takes that from them by an impulse along itself,
-//! j = (1 + e) w μ, of which ½ μ w² (1 − e²) is lost (Newton's restitution e; μ is what the two ends together weigh along the
-//! cable, m_Q m_L/(m_Q + m_L) with the hook at the centre of mass). Stiffness of real cables: EA is about 5 kN for 3 mm of polyamide
-//! and 100 kN for aramid or polyethylene; k of the cable is that over its length.
+//! An inextensible cable that becomes taut while its ends part at w takes that from them by an
+//! impulse along itself, j = (1 + e) w μ, of which ½ μ w² (1 − e²) is lost (Newton's restitution e;
+//! μ is what the two ends together weigh along the cable, m_Q m_L/(m_Q + m_L) with the hook at the
+//! centre of mass). Stiffness of real cables: EA is about 5 kN for 3 mm of polyamide and 100 kN for
+//! aramid or polyethylene; k of the cable is that over its length.
 
 use serde::Deserialize;
 
@@ -31,7 +32,8 @@ pub struct Cable {
     pub damping: f64,
     /// e of an inextensible one that becomes taut, 0 to 1.
     pub restitution: f64,
-    /// When it holds the payload: picked up at its start, from when the payload is in reach, and dropped at its end. Always if left out.
+    /// When it holds the payload: picked up at its start, from when the payload is in reach, and
+    /// dropped at its end. Always if left out.
     pub hooked: Option<Window>,
     /// When the payload is caught by something that does not move, and stays where it then is.
     pub snagged: Option<Window>,

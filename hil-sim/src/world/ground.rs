@@ -1,16 +1,21 @@
 //! Level ground, and what it does to a point of a body that has come into it.
 //!
-//! At a depth δ and with a velocity v, whose part into the ground is δ̇ and whose part along it is v_t:
+//! At a depth δ and with a velocity v, whose part into the ground is δ̇ and whose part along it is
+//! v_t:
 //!
 //! ```text
 //! N = max(0, k δ + c δ̇)                   a spring and a damper that do not pull
 //! F = −μ N v_t/√(|v_t|² + v_0²)           Coulomb's friction, but for a creep far below v_0 where it would hold
 //! ```
 //!
-//! k and c are given by what they mean for the body that stands on them: δ = m g/k is how far it sinks in by its own weight, and c is
-//! 2 ζ √(k m). A body that falls on it bounces with exp(−ζ/√(1−ζ²) (π − atan(2 ζ √(1−ζ²)/(1 − 2 ζ²)))) of its speed
-//! (Schwager and Pöschel, *Coefficient of restitution and linear-dashpot model revisited*, Granular Matter 9, 2007; ζ below ½√2, gravity
-//! neglected).
+//! k and c are given by what they mean for the body that stands on them: δ = m g/k is how far it sinks
+//! in by its own weight, and c is 2 ζ √(k m). A body that falls on it keeps this share of its speed
+//! (Schwager and Pöschel, *Coefficient of restitution and linear-dashpot model revisited*, Granular
+//! Matter 9, 2007; ζ below ½√2, gravity neglected):
+//!
+//! ```text
+//! e = exp(−ζ/√(1−ζ²) (π − atan(2 ζ √(1−ζ²)/(1 − 2 ζ²))))
+//! ```
 
 use controller::Vector3;
 use serde::Deserialize;
@@ -98,7 +103,8 @@ impl Ground {
         down - self.p3
     }
 
-    /// The force in N on a point of a body of `mass`, `depth` (m) in the ground and moving at `velocity` in N, N.
+    /// The force in N on a point of a body of `mass`, `depth` (m) in the ground and moving at
+    /// `velocity` in N, N.
     #[must_use]
     pub fn reaction(&self, mass: f64, gravity: f64, depth: f64, velocity: &Vector3<f64>) -> Vector3<f64> {
         if depth <= 0.0 {
@@ -118,8 +124,8 @@ impl Ground {
         0.5 * stiffness * depth.max(0.0) * depth.max(0.0)
     }
 
-    /// The fastest rate, 1/s, at which the ground moves a body of this mass, or turns one whose least moment of inertia is `inertia`
-    /// (kg·m²) about a foot at `lever` (m).
+    /// The fastest rate, 1/s, at which the ground moves a body of this mass, or turns one whose
+    /// least moment of inertia is `inertia` (kg·m²) about a foot at `lever` (m).
     pub(super) fn rate(&self, mass: f64, gravity: f64, per_inertia: f64, lever: f64) -> f64 {
         let [stiffness, _] = self.stiffness(mass, gravity);
         // The inverse of the mass that a foot feels.

@@ -1,10 +1,11 @@
-//! Everything outside the controller: the slung load in its environment, behind its actuators, seen through its sensors.
+//! Everything outside the controller: the slung load in its environment, behind its actuators, seen
+//! through its sensors.
 //!
-//! A flight calls [`World::read`] and [`World::advance`] in turn, once a control period. What happens is a function of the
-//! [`WorldSpec`], the start and the seed alone.
+//! A flight calls [`World::read`] and [`World::advance`] in turn, once a control period. What
+//! happens is a function of the [`WorldSpec`], the start and the seed alone.
 //!
-//! What a flight meets beside the slung-load system itself: environment, sensors, actuators. Everything is off unless a scenario
-//! switches it on.
+//! What a flight meets beside the slung-load system itself: environment, sensors, actuators.
+//! Everything is off unless a scenario switches it on.
 //!
 //! ```toml
 //! [environment]
@@ -199,7 +200,8 @@ impl World {
         self.spec.timing.misses(&mut self.clock)
     }
 
-    /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities zero; position and yaw stay.
+    /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities
+    /// zero; position and yaw stay.
     pub fn stop(&mut self, yaw: f64) {
         let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
         let mut state = State::at_rest(self.body.state().position);

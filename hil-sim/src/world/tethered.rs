@@ -1,7 +1,8 @@
-//! Payload and UAV as two free bodies, on a [`Cable`] that may be slack, over [`Ground`] on which both may stand.
+//! Payload and UAV as two free bodies, on a [`Cable`] that may be slack, over [`Ground`] on which
+//! both may stand.
 //!
-//! With S the cable's pull, u the unit vector along it from the hook at r_h (body axes) to the payload, and F_L, F_Q, τ_d all other
-//! forces and torques, the ground's among them:
+//! With S the cable's pull, u the unit vector along it from the hook at r_h (body axes) to the
+//! payload, and F_L, F_Q, τ_d all other forces and torques, the ground's among them:
 //!
 //! ```text
 //! m_L v̇   = m_L g e3 + F_L − S u
@@ -9,16 +10,19 @@
 //! J ω̇     = J ω × ω + τ + τ_d + r_h × (S Rᵀu),   Ṙ = R ω^
 //! ```
 //!
-//! S is zero while the cable is slack, a function of length and rate where it is elastic, and where it is taut and does not stretch what keeps
-//! u·(v̇ − v̇_h) + |ḋ|²/l = 0, d from the hook (which moves at v_h) to the payload, l its length. That is linear in S:
+//! S is zero while the cable is slack, a function of length and rate where it is elastic, and where
+//! it is taut and does not stretch what keeps u·(v̇ − v̇_h) + |ḋ|²/l = 0, d from the hook (which
+//! moves at v_h) to the payload, l its length. That is linear in S:
 //!
 //! ```text
-//! S = μ (u·(v̇⁰ − v̇⁰_h) + |ḋ|²/l),   1/μ = 1/m_L + 1/m_Q + (r_h × Rᵀu)·J⁻¹(r_h × Rᵀu)     (⁰: at S = 0)
+//! S = μ (u·(v̇⁰ − v̇⁰_h) + |ḋ|²/l),   1/μ = 1/m_L + 1/m_Q + (r_h × Rᵀu)·J⁻¹(r_h × Rᵀu)
+//! (⁰: at S = 0)
 //! ```
 //!
-//! A step ends where the cable becomes slack or taut, or a point comes to the ground or leaves it, and the next begins there, so that
-//! the Runge-Kutta method is of its order in spite of them. After each, length and rate of a taut cable are put back along u, by an impulse as
-//! that of a cable that becomes taut.
+//! A step ends where the cable becomes slack or taut, or a point comes to the ground or leaves it,
+//! and the next begins there, so that the Runge-Kutta method is of its order in spite of them.
+//! After each, length and rate of a taut cable are put back along u, by an impulse as that of a
+//! cable that becomes taut.
 
 use controller::{Command, Matrix3, Vector3};
 
@@ -76,19 +80,23 @@ struct Line {
     mass: f64,
 }
 
-/// Closer than this, s, two instants are one: far below any step, far above the rounding of what a step covers.
+/// Closer than this, s, two instants are one: far below any step, far above the rounding of what a
+/// step covers.
 const INSTANT: f64 = 1e-10;
 /// Changes of contact that are looked for in one step; those that come after are flown over.
 const CHANGES: usize = 12;
 /// Ends that part slower than this, m/s, do not bounce.
 const SETTLING: f64 = 0.01;
-/// A taut cable is slack at a pull below minus this, N: rounding does not make it slack in free fall.
+/// A taut cable is slack at a pull below minus this, N: rounding does not make it slack in free
+/// fall.
 const SLACK: f64 = 1e-6;
-/// Accuracy asks for so many steps in a radian of the fastest motion there is; stability would be content with one.
+/// Accuracy asks for so many steps in a radian of the fastest motion there is; stability would be
+/// content with one.
 const STEPS_PER_RADIAN: f64 = 3.0;
 
 impl Tethered {
-    /// `vehicle` at `bodies`; the cable is taut where they are its length apart and part or stay so.
+    /// `vehicle` at `bodies`; the cable is taut where they are its length apart and part or stay
+    /// so.
     #[must_use]
     pub fn new(vehicle: VehicleParameters, cable: Cable, ground: Option<Ground>, bodies: &Bodies) -> Self {
         let mut x = [0.0; COORDINATES];
@@ -164,7 +172,8 @@ impl Tethered {
         [payload, feet.contains(&true)]
     }
 
-    /// Kinetic energy, and that of gravity, cable and ground, J; the latter is zero with both bodies at height zero.
+    /// Kinetic energy, and that of gravity, cable and ground, J; the latter is zero with both
+    /// bodies at height zero.
     #[must_use]
     pub fn energy(&self) -> f64 {
         let VehicleParameters { payload_mass, uav_mass, inertia, gravity, rod_length } = self.vehicle;
@@ -213,8 +222,8 @@ impl Tethered {
         1.0 / (STEPS_PER_RADIAN * cable).max(ground)
     }
 
-    /// Moves on by `step` seconds; `command` gives thrust and torque at a time since its start, and `loads` what the velocities of payload and
-    /// UAV bring with them.
+    /// Moves on by `step` seconds; `command` gives thrust and torque at a time since its start, and
+    /// `loads` what the velocities of payload and UAV bring with them.
     pub fn advance(
         &mut self,
         step: f64,
@@ -317,7 +326,8 @@ impl Tethered {
         }
     }
 
-    /// Puts a taut cable that does not stretch back to its length, and takes its ends' parting or closing.
+    /// Puts a taut cable that does not stretch back to its length, and takes its ends' parting or
+    /// closing.
     fn settle(&mut self) {
         if !self.contacts.taut || self.cable.ea.is_some() {
             return;

@@ -29,10 +29,11 @@
 //! limits = { thrust = [3.0, 60.0], torque = [3.0, 3.0, 3.0] }                 # on its commands, N and N·m
 //! ```
 //!
-//! Every key, with unit, range and default, is in `docs/scenario.md`, by [`keys`](crate::describe::keys).
+//! Every key, with unit, range and default, is in `docs/scenario.md`, by
+//! [`keys`](crate::describe::keys).
 //!
-//! `[cable]`, `[ground]`, `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described in [`models`](crate::world);
-//! `seed` is that of their random numbers.
+//! `[cable]`, `[ground]`, `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described
+//! in [`models`](crate::world); `seed` is that of their random numbers.
 
 mod document;
 mod fields;
@@ -180,7 +181,8 @@ impl Law {
         }
     }
 
-    /// The horizontal circle to be flown: radius (m), p3 (m), and the speed (m/s) along (−p2, p1, 0)/r.
+    /// The horizontal circle to be flown: radius (m), p3 (m), and the speed (m/s) along (−p2, p1,
+    /// 0)/r.
     #[must_use]
     pub fn circle(&self) -> Option<[f64; 3]> {
         match self {
@@ -191,8 +193,9 @@ impl Law {
     }
 }
 
-/// The obstacle of Fig. 2: it sets v, α, β, φ, θ and all rates to zero, keeping p and ψ, and holds the vehicle there with
-/// the law suspended; then the law starts again from ζ = 0. A reference's clock runs on.
+/// The obstacle of Fig. 2: it sets v, α, β, φ, θ and all rates to zero, keeping p and ψ, and holds
+/// the vehicle there with the law suspended; then the law starts again from ζ = 0. A reference's
+/// clock runs on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Obstacle {
     /// When it is met, s.
