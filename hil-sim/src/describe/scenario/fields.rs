@@ -386,6 +386,7 @@ fn apart(
     ground: Option<Ground>,
 ) -> Result<Option<Bodies>, Invalid> {
     let invalid = |field: &str, message: &str| Invalid::new(format!("{at}.{field}"), message);
+    let uav_velocity = all_within(&format!("{at}.uav_velocity"), fields.uav_velocity, 1e3)?;
     let Some(uav_position) = fields.uav_position else {
         let missing = || invalid("standing", "needs initial.uav_position: where the UAV stands beside the payload");
         return if fields.standing { Err(missing()) } else { Ok(None) };
@@ -396,7 +397,7 @@ fn apart(
     let state = State::from_paper(x);
     let mut bodies = Bodies {
         uav_position: all_within(&format!("{at}.uav_position"), uav_position, 1e5)?.into(),
-        uav_velocity: all_within(&format!("{at}.uav_velocity"), fields.uav_velocity, 1e3)?.into(),
+        uav_velocity: uav_velocity.into(),
         ..Bodies::on_rod(&state, vehicle.rod_length)
     };
     if fields.standing {
