@@ -26,7 +26,7 @@ pub enum Next {
     Nothing,
     /// Lockstep: make the control step of this frame.
     Step(LOAD_STATE_DATA),
-    /// Keep the parameter at this index of [`Settings`] for after a reset.
+    /// Keep the parameter at this index of [`Settings`](crate::Settings) for after a reset.
     Store(usize),
     /// Reset the controller.
     Reboot,
