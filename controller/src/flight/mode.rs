@@ -120,7 +120,7 @@ impl<T: Real> Policy<T> {
     }
 }
 
-/// What a step answers; what the law had to say to it is in [`Supervisor::solution`].
+/// What a step answers; what the law had to say to it is in [`Supervisor::solution`](crate::Supervisor::solution).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output<T> {
     /// Finite and within the limits; nothing at all in [`Mode::Off`].
