@@ -1,8 +1,6 @@
 //! States of what autopilots report. The conversion is the model's; here are its pointers.
 
-use controller::{State, Vector3};
-
-use crate::axes::{Frames, Uav};
+use controller::{Frames, Matrix3, State, Uav, Vector3};
 
 use crate::pointer::{exclusive, shared};
 use crate::status::{Status, code};
@@ -21,14 +19,32 @@ pub fn frames(number: u32) -> Result<Frames, Status> {
     }
 }
 
-fn uav(number: u32, uav: &SlungUav) -> Result<Uav<f32>, Status> {
-    Ok(Uav {
-        frames: frames(number)?,
-        position: Vector3::from(uav.position_world_m),
-        velocity: Vector3::from(uav.velocity_world_m_s),
-        quaternion: uav.quaternion_body_to_world,
-        body_rate: Vector3::from(uav.body_rate_rad_s),
-    })
+/// The rotation of a unit quaternion (w, x, y, z). Of one of another length it is the length's square
+/// times a rotation, which the state's check finds.
+fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
+    let [w, x, y, z] = quaternion;
+    let twice = |a: f32| a + a;
+    Matrix3::new(
+        w * w + x * x - y * y - z * z,
+        twice(x * y - w * z),
+        twice(x * z + w * y),
+        twice(x * y + w * z),
+        w * w - x * x + y * y - z * z,
+        twice(y * z - w * x),
+        twice(x * z - w * y),
+        twice(y * z + w * x),
+        w * w - x * x - y * y + z * z,
+    )
+}
+
+/// The UAV in the library's own axes.
+fn uav(frames: Frames, reported: &SlungUav) -> Uav<f32> {
+    Uav {
+        position: frames.inertial(&reported.position_world_m.into()),
+        velocity: frames.inertial(&reported.velocity_world_m_s.into()),
+        attitude: frames.attitude(&rotation(reported.quaternion_body_to_world)),
+        body_rate: frames.body(&reported.body_rate_rad_s.into()),
+    }
 }
 
 impl From<&State<f32>> for SlungState {
@@ -53,7 +69,7 @@ impl From<&SlungState> for State<f32> {
             velocity: state.payload_velocity_ned_m_s.into(),
             rod: state.rod_ned.into(),
             rod_rate: state.rod_rate_ned_1_s.into(),
-            attitude: controller::Matrix3::new(m11, m12, m13, m21, m22, m23, m31, m32, m33),
+            attitude: Matrix3::new(m11, m12, m13, m21, m22, m23, m31, m32, m33),
             body_rate: state.body_rate_frd_rad_s.into(),
         }
     }
@@ -87,7 +103,9 @@ pub unsafe extern "C" fn slung_state_from_payload(
                 exclusive(state)?,
             )
         };
-        write(&uav(number, reported)?.with_payload(&(*position).into(), &(*velocity).into()), state)
+        let frames = frames(number)?;
+        let inertial = |v: &[f32; 3]| frames.inertial(&Vector3::from(*v));
+        write(&uav(frames, reported).with_load(inertial(position), inertial(velocity)), state)
     };
     code(convert())
 }
@@ -117,8 +135,10 @@ pub unsafe extern "C" fn slung_state_from_cable(
                 exclusive(state)?,
             )
         };
-        let uav = uav(number, reported)?;
-        write(&uav.with_cable(&(*hook).into(), cable_length_m, &(*cable).into(), &(*rate).into()), state)
+        let frames = frames(number)?;
+        let inertial = |v: &[f32; 3]| frames.inertial(&Vector3::from(*v));
+        let hook = frames.body(&Vector3::from(*hook));
+        write(&uav(frames, reported).with_cable(hook, cable_length_m, inertial(cable), inertial(rate)), state)
     };
     code(convert())
 }

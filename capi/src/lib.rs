@@ -5,7 +5,6 @@
 //! outside the memory that the caller hands it. `object/` makes one relocatable object of it.
 #![no_std]
 
-mod axes;
 mod controller;
 mod frames;
 mod parameters;

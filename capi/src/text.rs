@@ -14,6 +14,7 @@ pub fn mode_code(mode: Mode) -> u32 {
         Mode::Hold => 4,
         Mode::Land => 5,
         Mode::Fault => 6,
+        Mode::TakeOff => 7,
         // What a newer controller adds and this interface does not know.
         _ => u32::MAX,
     }
@@ -40,6 +41,7 @@ pub fn fault_code(fault: Fault) -> u32 {
         Fault::NotFinite => 2,
         Fault::NoPath => 3,
         Fault::PayloadLost => 4,
+        Fault::Slack => 5,
         Fault::State(channel) => {
             0x100
                 + match channel {
@@ -49,6 +51,8 @@ pub fn fault_code(fault: Fault) -> u32 {
                     Channel::RodRate => 3,
                     Channel::Attitude => 4,
                     Channel::BodyRate => 5,
+                    Channel::UavPosition => 6,
+                    Channel::UavVelocity => 7,
                     _ => 0xff,
                 }
         }
@@ -89,6 +93,7 @@ pub extern "C" fn slung_mode_text(mode: u32) -> *const c_char {
         4 => c"holding",
         5 => c"landing",
         6 => c"fault",
+        7 => c"taking off",
         _ => c"unknown mode",
     };
     text.as_ptr()
@@ -103,12 +108,15 @@ pub extern "C" fn slung_fault_text(fault: u32) -> *const c_char {
         2 => c"the law's answer is not finite",
         3 => c"no point of the path was found from here",
         4 => c"the payload is gone",
+        5 => c"the cable is slack",
         0x100 => c"the payload's position is not finite or out of range",
         0x101 => c"the payload's velocity is not finite or out of range",
         0x102 => c"the rod's direction is not a unit vector",
         0x103 => c"the rod's rate is not finite or out of range",
         0x104 => c"the attitude is not a rotation",
         0x105 => c"the body rate is not finite or out of range",
+        0x106 => c"the UAV's position is not finite or out of range",
+        0x107 => c"the UAV's velocity is not finite or out of range",
         0x201..=0x207 => return slung_warning_text(fault - 0x200),
         _ => c"unknown fault",
     };
