@@ -145,7 +145,7 @@ impl Wire for Deaf {
 fn telemetry_that_is_lost_is_counted() {
     let options = Options { telemetry: true, ..OPTIONS };
     let mut target = soft_target(options, |stream| Deaf { stream, heard: 0 }).unwrap();
-    let scenario = scenario("fig3a", 1.0);
+    let scenario = scenario("fig3a", 3.0);
     target.prepare(&scenario).unwrap();
     let flight = fly(&scenario, &mut target);
     assert_eq!(flight.end, End::Complete);
