@@ -3,6 +3,7 @@
 mod campaign;
 mod check;
 mod compare;
+mod estimate;
 mod eval;
 mod fit;
 mod fly;
@@ -153,6 +154,11 @@ enum Command {
     /// each alone and all together. Writes compare.json and compare.html.
     #[command(after_help = compare::EXAMPLES)]
     Compare(compare::CompareArguments),
+    /// Fly the law on an estimate of its state: from RTK, motion capture or a plain receiver, in calm and gusts, told right and wrong.
+    ///
+    /// Each case from random starts for 60 s; the full state stands beside. Writes estimate.json.
+    #[command(after_help = estimate::EXAMPLES)]
+    Estimate(estimate::EstimateArguments),
     /// Path following against trajectory tracking, start by start: where the paper's claims hold, and where they do not.
     #[command(after_help = policies::EXAMPLES)]
     Policies(policies::PolicyArguments),
@@ -225,6 +231,7 @@ pub fn run() -> Ended {
         Some(Command::Campaign(arguments)) => campaign::campaign(&common, &arguments),
         Some(Command::Merge { folders, tables }) => campaign::merge(&common, &folders, &tables),
         Some(Command::Compare(arguments)) => compare::compare(&common, &arguments),
+        Some(Command::Estimate(arguments)) => estimate::estimate(&common, &arguments),
         Some(Command::Policies(arguments)) => policies::policies(&common, &arguments),
         Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),

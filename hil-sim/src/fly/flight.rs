@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use controller::{Command, State, Vector3};
 
 use super::pilot::{Answers, Decision};
+use super::sight::Sight;
 use crate::describe::scenario::Scenario;
 use crate::world::Seed;
 
@@ -98,6 +99,8 @@ pub struct Moment<'a> {
     pub distance_m: Option<f64>,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
     pub decision: Option<&'a Decision>,
+    /// The estimator that the pilot flies on, where it does, once it has answered.
+    pub sight: Option<&'a Sight>,
     /// The flight is over: there is one such moment, the last.
     pub is_over: bool,
 }
@@ -116,6 +119,11 @@ pub fn fly(
     let told = &controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
     let mut world = scenario.begin(&plan.start, hover, plan.seed);
+    let mut sight = scenario.estimator.as_ref().map(|estimator| {
+        // Every range of a scenario lies within the filters' own.
+        Sight::new(estimator, scenario, &plan.start, hover.thrust, plan.seed).expect("a scenario's numbers")
+    });
+    let mut applied = hover;
     let period = 1.0 / controller.rate_hz;
     let steps = scenario.steps();
     let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
@@ -155,14 +163,17 @@ pub fn fly(
             end = End::Crashed(t_s);
             break;
         }
-        let seen = Moment { step, t_s, state: &state, distance_m, decision: None, is_over: false };
+        let seen = Moment { step, t_s, state: &state, distance_m, decision: None, sight: None, is_over: false };
         if held.as_ref().is_some_and(|held| held.contains(&step)) {
             watch(&seen);
             world.wait();
             step += 1;
             continue;
         }
-        let read = world.read();
+        let read = match &mut sight {
+            Some(sight) => sight.see(&world, &applied),
+            None => world.read(),
+        };
         let decision = if let Some(last) = last.filter(|_| world.misses()) {
             last
         } else {
@@ -180,8 +191,9 @@ pub fn fly(
             decision
         };
         last = Some(decision);
-        watch(&Moment { decision: Some(&decision), ..seen });
-        world.advance(&decision.command);
+        watch(&Moment { decision: Some(&decision), sight: sight.as_ref(), ..seen });
+        applied = decision.command;
+        world.advance(&applied);
         step += 1;
         // Each component: a sum could overflow.
         let Command { thrust, torque } = &decision.command;
@@ -195,7 +207,15 @@ pub fn fly(
     // A state beyond all ranges is no number to log or to draw.
     if state.check().is_ok() {
         let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
-        watch(&Moment { step, t_s: world.time_s(), state: &state, distance_m, decision: None, is_over: true });
+        watch(&Moment {
+            step,
+            t_s: world.time_s(),
+            state: &state,
+            distance_m,
+            decision: None,
+            sight: None,
+            is_over: true,
+        });
     }
     (plan.control.progress)(scenario.duration_s - told_s);
     end

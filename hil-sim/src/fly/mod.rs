@@ -13,4 +13,5 @@ pub mod metrics;
 pub mod pilot;
 pub mod run;
 pub mod sample;
+pub mod sight;
 pub mod twin;

@@ -3,6 +3,7 @@
 pub mod campaign;
 pub mod check;
 pub mod compare;
+pub mod estimate;
 pub mod eval;
 pub mod fit;
 mod json;

@@ -161,6 +161,12 @@ impl ActuatorModel {
         command
     }
 
+    /// What the rotors give by their speeds, at the coefficients they are told to have.
+    #[must_use]
+    pub fn given(&self) -> &Command<f64> {
+        &self.given
+    }
+
     /// Ends a piece of `dt` s.
     pub fn pass(&mut self, dt: f64) {
         self.given = self.lagging(dt);

@@ -62,7 +62,7 @@ pub mod integrate;
 pub mod multibody;
 pub mod random;
 mod rotors;
-mod sensors;
+pub mod sensors;
 mod tethered;
 mod timing;
 
@@ -73,6 +73,7 @@ pub use dryden::{Dryden, Gusts};
 pub use environment::{Air, Environment, PayloadStep, drag};
 pub use ground::Ground;
 pub use rotors::{Layout, RotorFailure, Rotors};
+pub use sensors::instruments::{InstrumentModel, Readings};
 pub use sensors::{Channel, SensorModel, Sensors, Window};
 pub use tethered::Tethered;
 pub use timing::Timing;
@@ -187,6 +188,12 @@ impl World {
     #[must_use]
     pub fn body(&self) -> &Body {
         &self.body
+    }
+
+    /// Thrust that the rotors' speeds stand for, N: what they really give is that times the thrust scale.
+    #[must_use]
+    pub fn rotor_thrust(&self) -> f64 {
+        self.actuators.given().thrust
     }
 
     /// The state now, read by the sensors. Once a period.

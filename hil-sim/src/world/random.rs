@@ -19,6 +19,20 @@ pub enum Purpose {
     Sensor = 3,
     /// The control loop's timing.
     Timing = 4,
+    /// Inertial measurement unit.
+    Imu = 5,
+    /// Satellite receiver.
+    Gnss = 6,
+    /// Barometer.
+    Barometer = 7,
+    /// Magnetometer.
+    Magnetometer = 8,
+    /// Rotor speeds.
+    Esc = 9,
+    /// Motion capture.
+    Mocap = 10,
+    /// What an estimator is told at its start.
+    Told = 11,
 }
 
 /// A seeded stream of random numbers.

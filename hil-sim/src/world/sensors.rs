@@ -11,6 +11,12 @@
 //! order, then exactly, except for `quantum`, which acts on the components read. The rod's rate is
 //! read orthogonal to the rod read.
 
+pub mod gnss;
+pub mod imu;
+pub mod instruments;
+pub mod mocap;
+pub mod simple;
+
 use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;
 
@@ -77,6 +83,18 @@ pub struct Sensors {
     pub attitude: Channel,
     /// In body axes, rad/s.
     pub body_rate: Channel,
+    /// Accelerometer and gyro, for an estimator; those of a vehicle in flight if left out.
+    pub imu: Option<imu::Imu>,
+    /// Satellite receiver, for an estimator, as what follows.
+    pub gnss: Option<gnss::Gnss>,
+    /// Height by pressure.
+    pub barometer: Option<simple::Barometer>,
+    /// Direction of the earth's field.
+    pub magnetometer: Option<simple::Magnetometer>,
+    /// Speeds of the rotors.
+    pub esc: Option<simple::Esc>,
+    /// Motion capture.
+    pub mocap: Option<mocap::Mocap>,
 }
 
 impl Channel {
@@ -146,7 +164,13 @@ impl Sensors {
     /// # Errors
     /// [`Invalid`] names the field.
     pub fn check(&self, at: &str, period: f64) -> Result<(), Invalid> {
-        self.channels().into_iter().try_for_each(|(name, channel)| channel.check(&join(at, name), period))
+        self.channels().into_iter().try_for_each(|(name, channel)| channel.check(&join(at, name), period))?;
+        self.imu.map_or(Ok(()), |imu| imu.check(&join(at, "imu")))?;
+        self.gnss.map_or(Ok(()), |gnss| gnss.check(&join(at, "gnss")))?;
+        self.barometer.map_or(Ok(()), |barometer| barometer.check(&join(at, "barometer")))?;
+        self.magnetometer.map_or(Ok(()), |magnetometer| magnetometer.check(&join(at, "magnetometer")))?;
+        self.esc.map_or(Ok(()), |esc| esc.check(&join(at, "esc")))?;
+        self.mocap.map_or(Ok(()), |mocap| mocap.check(&join(at, "mocap")))
     }
 
     /// The same standard deviations as the paper's extension was measured with: 2 cm, 3 cm/s, 5
@@ -161,6 +185,7 @@ impl Sensors {
             rod_rate: noise(0.02),
             attitude: noise(0.005),
             body_rate: noise(0.01),
+            ..Self::default()
         }
     }
 }
@@ -190,7 +215,7 @@ impl SensorModel {
         if self.perfect {
             return *state;
         }
-        let Sensors { position, velocity, rod, rod_rate, attitude, body_rate } = self.sensors;
+        let Sensors { position, velocity, rod, rod_rate, attitude, body_rate, .. } = self.sensors;
         let rod_read = {
             let aged = self.aged(&rod, &state.rod, &{ self.before.rod });
             let turned = aged + rod.error(&mut self.stream).cross(&aged);

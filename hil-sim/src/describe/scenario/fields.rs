@@ -4,7 +4,7 @@ use controller::{ActuatorLimits, ObserverParams, State, Vector3, VehicleParams};
 use serde::Deserialize;
 
 use super::gains::{self, GainFields, PoleField};
-use super::{ControllerSpec, Law, Obstacle, Scenario, steady};
+use super::{ControllerSpec, EstimatorSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
 use crate::study::check::Limits;
@@ -35,6 +35,7 @@ struct ScenarioFields {
     actuators: Actuators,
     #[serde(default)]
     timing: Timing,
+    estimator: Option<EstimatorSpec>,
     #[serde(default)]
     seed: u64,
     limits: Option<toml::Value>,
@@ -185,6 +186,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     fields.sensors.check("sensors", 1.0 / rate_hz)?;
     fields.actuators.check("actuators")?;
     fields.timing.check("timing")?;
+    fields.estimator.map_or(Ok(()), |estimator| estimator.check("estimator"))?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
     let mut bodies = None;
@@ -243,6 +245,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         sensors: fields.sensors,
         actuators: fields.actuators,
         timing: fields.timing,
+        estimator: fields.estimator,
         seed: fields.seed,
         limits,
         duration_s,

@@ -34,13 +34,18 @@
 //!
 //! `[cable]`, `[ground]`, `[environment]`, `[sensors]`, `[actuators]` and `[timing]` are described
 //! in [`models`](crate::world); `seed` is that of their random numbers.
+//!
+//! `[estimator]`, see [`EstimatorSpec`], has the law fly on what it finds from the instruments in
+//! `[sensors]`.
 
 mod document;
+mod estimator;
 mod fields;
 mod gains;
 mod library;
 mod steady;
 
+pub use estimator::EstimatorSpec;
 pub use library::{CURVES, FIGURES, builtin};
 
 use controller::{ActuatorLimits, Command, Gains, ObserverParams, Sampling, State, TrackGains, VehicleParams};
@@ -83,6 +88,8 @@ pub struct Scenario {
     pub actuators: Actuators,
     /// The control loop's clock.
     pub timing: Timing,
+    /// What finds the state from the instruments; the law is given the sensors' channels if left out.
+    pub estimator: Option<EstimatorSpec>,
     /// Of all that is random.
     pub seed: u64,
     /// What the vehicle may be asked to do on its path.
