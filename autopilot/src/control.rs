@@ -9,7 +9,7 @@
 //!
 //! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
 //! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
-//! the supervisor (`controller::Supervisor`, which has the modes' table) on what there is: a missing state is passed on as
+//! the supervisor (`controller::Supervisor`, which has the modes' table) on the newest state: a missing one is passed on as
 //! absent; the supervisor coasts, then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
 
 use controller::{Command, Fault, Margin, Mode, Request, State};
@@ -24,7 +24,7 @@ use crate::failsafe::{Failsafe, Loss};
 use crate::report;
 use crate::settings::{Setting, Settings};
 
-/// A state older than this, s, is none to arm on.
+/// Arming needs a state no older than this, s.
 const FRESH_S: f32 = 0.5;
 
 /// What drives the control step, and whether the rotors do as they are told.

@@ -148,7 +148,7 @@ pub fn telemetry(sequence: u32, rig: &Rig<f32>, state: &State<f32>, integral: [f
     telemetry
 }
 
-/// What is none is sent as zero.
+/// A number that is not finite is sent as zero.
 pub fn number(x: f32) -> f32 {
     if x.is_finite() { x } else { 0.0 }
 }

@@ -100,7 +100,7 @@ fn what_makes_no_state_is_found() {
     };
     let good = uav(0);
     assert_eq!(status(good, [1.0, 2.0, -10.0]), Status::Ok as i32);
-    // A payload in the UAV's place, a quaternion that is twice as long, a number that is none.
+    // A payload in the UAV's place, a quaternion that is twice as long, a NaN.
     let bad = Status::BadState as i32;
     assert_eq!(status(good, good.position_world_m), bad);
     let long = SlungUav { quaternion_body_to_world: [2.0, 0.0, 0.0, 0.0], ..good };

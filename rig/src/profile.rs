@@ -10,7 +10,7 @@ use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::{parameter, run};
 
-/// From 0, which is none.
+/// From 0, which means no limit.
 const CENTRIPETAL: (f64, f64) = (0.0, ranges::CENTRIPETAL.max);
 
 pub(crate) const ENTRIES: &[Entry<f64>] = &[

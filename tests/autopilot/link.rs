@@ -137,7 +137,7 @@ fn with_its_rotors_on_it_arms_on_a_fresh_good_state_alone() {
     let try_arming = |station: &mut Station| station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     let mut station = Station::new(driven(0.0));
     assert_eq!(try_arming(&mut station), (DENIED, vec![refused.to_owned()]));
-    // A bad one is none.
+    // A bad one does not count.
     station.autopilot.receive(&LOAD_STATE_DATA { rod: [0.0; 3], ..frame(1) });
     station.autopilot.tick();
     assert_eq!(try_arming(&mut station).0, DENIED);

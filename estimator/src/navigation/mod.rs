@@ -55,7 +55,7 @@ pub struct Fix<T> {
 /// Why a measurement is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// A number that is none, or outside what can be.
+    /// A number that is not finite, or outside its possible range.
     NotUsable,
     /// Older than the ring remembers, or from the future.
     Age,
@@ -229,7 +229,7 @@ impl<T: Real> Navigation<T> {
     /// [`Refused`] says why it is not taken.
     pub fn heading(&mut self, heading: T) -> Result<(), Refused> {
         let [b1, ..] = axes(&self.state.attitude);
-        // Near the vertical there is none.
+        // Near the vertical there is no heading.
         let is_angle = heading.is_finite() && heading.abs() < T::lit(100.0);
         if !is_angle || b1.x * b1.x + b1.y * b1.y < T::lit(0.04) {
             return Err(Refused::NotUsable);
@@ -269,7 +269,7 @@ impl<T: Real> Navigation<T> {
         }
     }
 
-    /// Compares an attitude with the nominal one of then.
+    /// Compares an attitude with the nominal one at its time.
     fn face(&mut self, measured: &Matrix3<T>, deviation: T, age: T) -> Result<(), Refused> {
         let mut double = Vector3::zeros();
         for (now, then) in axes(&self.state.attitude).into_iter().zip(axes(measured)) {
@@ -303,7 +303,7 @@ impl<T: Real> Navigation<T> {
             [stated[0].max(least[0]), stated[1].max(least[1])].map(|d| d.max(T::lit(1e-5)))
         };
         let (x, v) = self.ring.at(age, (self.state.position, self.state.velocity));
-        // The lever of then: turned back.
+        // The lever at that time: turned back.
         let swing = self.state.body_rate.cross(lever);
         let reach = self.state.attitude * (lever - swing * age);
         let moving = self.state.attitude * swing;

@@ -326,7 +326,7 @@ impl<T: Real> Payload<T> {
     }
 
     /// The cable has changed, or the filter has lost the rod: taut, the rod is where it pulls, and
-    /// nothing is known of its swing or of what hangs there; slack, there is none.
+    /// nothing is known of its swing or of what hangs there; slack, there is no rod.
     fn restart(&mut self, is_new: bool) {
         let pull = self.watch.pull;
         self.state.set_rod([T::zero(); 2], [T::zero(); 2]);

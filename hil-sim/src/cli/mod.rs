@@ -170,7 +170,7 @@ enum Command {
     Tune(tune::TuneArguments),
     /// Fit a closed smooth curve to waypoints.
     ///
-    /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and what there is to know of it.
+    /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and its properties.
     #[command(after_help = fit::EXAMPLES)]
     Fit(fit::FitArguments),
     /// Fly with the controller at the other end of a serial line, a socket, or in an emulator.

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! slack         l < L           no force
-//! inextensible  l = L, l̇ = 0    the tension that keeps it so, as long as that is none below zero
+//! inextensible  l = L, l̇ = 0    the tension that keeps it so, as long as that is not negative
 //! elastic       l > L           max(0, k (l − L) + c l̇),   k = EA/L
 //! ```
 //!

@@ -61,7 +61,7 @@ pub struct Channel {
     pub jitter_s: f64,
     /// When the reading stands still.
     pub freeze: Option<Window>,
-    /// When there is none, and the driver gives zeros.
+    /// When the sensor is silent, and its driver gives zeros.
     pub drop_out: Option<Window>,
     /// When the driver gives NaN.
     pub nan: Option<Window>,
