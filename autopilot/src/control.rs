@@ -7,10 +7,12 @@
 //!    └──────────── landed; or disarm, from anywhere ────────────┘
 //! ```
 //!
-//! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground, whose rotors turn at their least thrust.
-//! Where more was, it finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps
-//! the supervisor (`controller::Supervisor`, which has the modes' table) on the newest state: a missing one is passed on as
-//! absent; the supervisor coasts, then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
+//! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground,
+//! whose rotors turn at their least thrust. Where more was, it finds one in flight, which is taken
+//! over from hover thrust and does that. From there on every control period steps the supervisor
+//! (`controller::Supervisor`, which has the modes' table) on the newest state: a missing one is
+//! passed on as absent; the supervisor coasts, then sinks or cuts. What the pilot asks for
+//! ([`Autopilot::request`]) lasts until disarming.
 
 use controller::{Command, Fault, Margin, Mode, Request, State};
 use link::dialect::{
@@ -127,7 +129,8 @@ pub struct Answer {
     pub command: LOAD_COMMAND_DATA,
     /// For the link, when it is its turn.
     pub telemetry: Option<LOAD_TELEMETRY_DATA>,
-    /// What the rotors get, from 0 to 1: zero when not armed, and when the vehicle is a simulated one.
+    /// What the rotors get, from 0 to 1: zero when not armed, and when the vehicle is a simulated
+    /// one.
     pub outputs: [f32; 4],
 }
 
@@ -308,7 +311,8 @@ impl Autopilot {
         self.counters
     }
 
-    /// Makes the controller of the parameters as they are, to be started by the next good state. Armed already, it does nothing.
+    /// Makes the controller of the parameters as they are, to be started by the next good state.
+    /// Armed already, it does nothing.
     ///
     /// # Errors
     /// Why not; it stays disarmed.
@@ -340,8 +344,9 @@ impl Autopilot {
         self.last = None;
     }
 
-    /// A state for the coming control period: flight and real time. One from another time than the last, earlier or seconds later, is refused;
-    /// but for the third in a row that agree on another, which is that of a clock that has restarted.
+    /// A state for the coming control period: flight and real time. One from another time than the
+    /// last, earlier or seconds later, is refused; but for the third in a row that agree on
+    /// another, which is that of a clock that has restarted.
     pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
         if self.epoch.accept(frame.time_usec) {
             self.inbox = Some(frame.clone());
@@ -361,7 +366,8 @@ impl Autopilot {
         self.control(frame.as_ref())
     }
 
-    /// A control period by a state frame: lockstep. The same sequence number again gets the same answer again.
+    /// A control period by a state frame: lockstep. The same sequence number again gets the same
+    /// answer again.
     pub fn lockstep(&mut self, frame: &LOAD_STATE_DATA) -> Answer {
         if let Some(last) = &self.last {
             let ahead = frame.sequence.wrapping_sub(last.command.sequence);
@@ -398,7 +404,8 @@ impl Autopilot {
         self.overrun = true;
     }
 
-    /// All counters, for the link; the frames' and bytes' are the server's and the board's to fill in.
+    /// All counters, for the link; the frames' and bytes' are the server's and the board's to fill
+    /// in.
     #[must_use]
     pub fn counters_message(&self) -> LOAD_COUNTERS_DATA {
         let Counters { steps, overruns, missed, refused, fallbacks, worst_cycles } = self.counters;

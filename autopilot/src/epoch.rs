@@ -14,8 +14,8 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Whether a state stamped `time_usec` is to be used: it is later than the last one, by no more than a leap, or the latest of enough
-    /// that agree among themselves on another time.
+    /// Whether a state stamped `time_usec` is to be used: it is later than the last one, by no more
+    /// than a leap, or the latest of enough that agree among themselves on another time.
     pub fn accept(&mut self, time_usec: u64) -> bool {
         let follows = |before: u64| time_usec.checked_sub(before).is_some_and(|gap| (1..=LEAP_US).contains(&gap));
         let is_believed = self.newest.is_none_or(follows) || {

@@ -1,4 +1,5 @@
-//! What happens when somebody is not heard any more: the ground station, the pilot's stick; and when the battery is low.
+//! What happens when somebody is not heard any more: the ground station, the pilot's stick; and
+//! when the battery is low.
 
 use controller::Request;
 use link::dialect::LoadFault;
@@ -88,7 +89,8 @@ impl Failsafe {
         }
     }
 
-    /// A control period goes by. Returns what has just been lost, each with what is then wanted if anything.
+    /// A control period goes by. Returns what has just been lost, each with what is then wanted if
+    /// anything.
     pub fn advance(&mut self, period_s: f32, settings: &Settings) -> [Option<(Loss, Option<Request>)>; 3] {
         for sender in [&mut self.station, &mut self.stick] {
             sender.silent_s = sender.silent_s.map(|silent_s| silent_s + period_s);

@@ -1,4 +1,5 @@
-//! The flight program without its hardware: what a board's interrupts call, and what tests call on the host.
+//! The flight program without its hardware: what a board's interrupts call, and what tests call on
+//! the host.
 //!
 //! ```text
 //! bytes ──link::Decoder──▶ Server ──parameters, arming, requests──▶ Autopilot ◀── timer (flight) or state frame (lockstep)
@@ -7,7 +8,8 @@
 //!                                                   Answer: command, rotors, telemetry
 //! ```
 //!
-//! The controller is a [`Rig`](rig::Rig) made of parameters; here stand only when it is stepped and what the link hears of it.
+//! The controller is a [`Rig`](rig::Rig) made of parameters; here stand only when it is stepped and
+//! what the link hears of it.
 //!
 //! [`Autopilot`] is the control side, which a timer's interrupt calls; [`Server`] is the link side. In lockstep neither reads a
 //! clock: the same frames give the same answers, bit by bit, however long they take to arrive.

@@ -40,7 +40,8 @@ pub fn margin(margin: Margin) -> LoadFault {
     }
 }
 
-/// The bit of a fault that stands. A state's, missing or bad, has its bit where it is found, step by step.
+/// The bit of a fault that stands. A state's, missing or bad, has its bit where it is found, step
+/// by step.
 pub fn fault(fault: Fault) -> LoadFault {
     match fault {
         Fault::Margin(which) => margin(which),
@@ -52,7 +53,8 @@ pub fn fault(fault: Fault) -> LoadFault {
     }
 }
 
-/// What to tell the pilot: the mode, and what keeps it from another. A state's fault that is over is told of where it has led to hold alone.
+/// What to tell the pilot: the mode, and what keeps it from another. A state's fault that is over
+/// is told of where it has led to hold alone.
 pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence: Option<Absence>) -> Text {
     let name = match mode {
         Mode::Off => "off",
@@ -121,7 +123,8 @@ pub fn notice(notice: Notice) -> &'static str {
     }
 }
 
-/// Where the last command of `rig`, made on `state`, came from, with the `integral` as it was before.
+/// Where the last command of `rig`, made on `state`, came from, with the `integral` as it was
+/// before.
 pub fn telemetry(sequence: u32, rig: &Rig<f32>, state: &State<f32>, integral: [f32; 3]) -> LOAD_TELEMETRY_DATA {
     let rig::Telemetry { law, payload_force, uav_force, torque, payload_mass } = rig.telemetry(state);
     let mut telemetry = LOAD_TELEMETRY_DATA {

@@ -1,4 +1,5 @@
-//! All parameters by the names that MAVLink's parameter protocol gives them: the program's own, then the controller's.
+//! All parameters by the names that MAVLink's parameter protocol gives them: the program's own,
+//! then the controller's.
 
 use rig::{Entry, Parameter, Parameters, Refused, Tabled as _};
 

@@ -1,16 +1,19 @@
-//! Parameters that survive a reset: records in two pages of flash, each with a checksum, so that a write that is cut short costs what it
-//! wrote and nothing else.
+//! Parameters that survive a reset: records in two pages of flash, each with a checksum, so that a
+//! write that is cut short costs what it wrote and nothing else.
 //!
-//! A parameter that is set is appended as a record of its name's hash, its value and a checksum; the last good one counts. When a page is
-//! more than half full at a start, what differs from the defaults is written to the other page, whose first record, its number, comes
-//! last and makes it the valid one. Until then the old page is. Erasing, which may take seconds, so happens at a start alone.
+//! A parameter that is set is appended as a record of its name's hash, its value and a checksum;
+//! the last good one counts. When a page is more than half full at a start, what differs from the
+//! defaults is written to the other page, whose first record, its number, comes last and makes it
+//! the valid one. Until then the old page is. Erasing, which may take seconds, so happens at a
+//! start alone.
 
 use crate::settings::{self, Settings};
 
 /// Bytes of a record: key, value, checksum, each with its least byte first.
 pub const RECORD: usize = 12;
 
-/// Two pages of memory as flash is: erased to ones, and written once. What is written may be less than all when power fails.
+/// Two pages of memory as flash is: erased to ones, and written once. What is written may be less
+/// than all when power fails.
 pub trait Flash {
     /// Records that a page holds.
     const RECORDS: usize;
@@ -65,7 +68,8 @@ const NUMBER: u32 = 0;
 const ERASED: [u8; RECORD] = [0xFF; RECORD];
 
 impl<F: Flash> Store<F> {
-    /// Reads what is kept into `settings`, and tidies up. To be called before anything that must not wait for an erasure.
+    /// Reads what is kept into `settings`, and tidies up. To be called before anything that must
+    /// not wait for an erasure.
     ///
     /// # Errors
     /// The flash's; `settings` then holds what could be read.

@@ -19,8 +19,8 @@ pub fn frames(number: u32) -> Result<Frames, Status> {
     }
 }
 
-/// The rotation of a unit quaternion (w, x, y, z). Of one of another length it is the length's square
-/// times a rotation, which the state's check finds.
+/// The rotation of a unit quaternion (w, x, y, z). Of one of another length it is the length's
+/// square times a rotation, which the state's check finds.
 fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
     let [w, x, y, z] = quaternion;
     let twice = |a: f32| a + a;

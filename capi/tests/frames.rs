@@ -22,8 +22,8 @@ fn body(frames: u32, [x, y, z]: [f32; 3]) -> [f32; 3] {
 
 /// Nose 30° from north to east and 10° up.
 fn uav(frames: u32) -> SlungUav {
-    // A yaw about down is minus a yaw about up, and counts from east in east-north-up. A pitch about right
-    // is minus one about left.
+    // A yaw about down is minus a yaw about up, and counts from east in east-north-up. A pitch
+    // about right is minus one about left.
     let (yaw, pitch) = match frames {
         0 => (30.0_f32, 10.0_f32),
         1 => (60.0, -10.0),

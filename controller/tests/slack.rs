@@ -1,5 +1,6 @@
-//! A vehicle with a cable that can go slack, over ground: two bodies, a cable that pulls only, and what the supervisor makes of
-//! them from the UAV's own navigation. The plant here shares no equation with the library's model of a taut rod.
+//! A vehicle with a cable that can go slack, over ground: two bodies, a cable that pulls only, and
+//! what the supervisor makes of them from the UAV's own navigation. The plant here shares no
+//! equation with the library's model of a taut rod.
 
 use controller::{
     ActuatorLimits, ApproachLimits, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains, Matrix3,
@@ -312,8 +313,8 @@ fn a_flight_goes_from_ground_to_ground() {
         );
         assert_eq!(modes, [Mode::Idle, Mode::TakeOff, Mode::Hold, Mode::Join, Mode::Follow, Mode::Land, Mode::Off]);
         assert!(height > 0.5, "{name}: the load is at {height} m");
-        // The cable becomes taut at no more than the rising speed, 0.4 m/s, which its stiffness turns into w √(k μ); and the load
-        // weighs twice as much in no manoeuvre.
+        // The cable becomes taut at no more than the rising speed, 0.4 m/s, which its stiffness
+        // turns into w √(k μ); and the load weighs twice as much in no manoeuvre.
         let reduced = setting.payload_mass * setting.uav_mass / (setting.payload_mass + setting.uav_mass);
         let impact = 0.4 * (CABLE[0] * reduced).sqrt();
         assert!(jerk < impact + 2.0 * setting.payload_mass * 9.81, "{name}: a jerk of {jerk} N");

@@ -16,7 +16,8 @@ fn every_case_can_be_made() {
     }
 }
 
-/// The bars are a centimetre above what 16 flights measure in the median: a sign that is wrong costs metres.
+/// The bars are a centimetre above what 16 flights measure in the median: a sign that is wrong
+/// costs metres.
 #[test]
 fn the_law_flies_on_rtk_alone() {
     for (case, most_m, rod_deg) in [("rtk-calm", 0.06, 0.45), ("rtk-gusts", 0.07, 0.55)] {

@@ -40,7 +40,8 @@ impl Frames {
     #[must_use]
     pub fn attitude<T: Real>(self, r: &Matrix3<T>) -> Matrix3<T> {
         let column = |i| self.inertial(&r.column(i).into());
-        // Their second and third body axes are the opposites of b2 and b3, where they are not the same.
+        // Their second and third body axes are the opposites of b2 and b3, where they are not the
+        // same.
         let sign = if self == Self::NedFrd { T::one() } else { -T::one() };
         Matrix3::from_columns(&[column(0), column(1) * sign, column(2) * sign])
     }

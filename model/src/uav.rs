@@ -1,4 +1,5 @@
-//! The UAV by itself, as its own navigation has it: what remains known when cable and payload are not.
+//! The UAV by itself, as its own navigation has it: what remains known when cable and payload are
+//! not.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -51,9 +52,11 @@ impl<T: Real> Uav<T> {
         }
     }
 
-    /// The state with the load at `position`, moving at `velocity` (N, m and m/s), as motion capture has it.
+    /// The state with the load at `position`, moving at `velocity` (N, m and m/s), as motion
+    /// capture has it.
     ///
-    /// The law's q is the line from the centre of mass to the load, and its L their distance: where the hook is does not matter.
+    /// The law's q is the line from the centre of mass to the load, and its L their distance: where
+    /// the hook is does not matter.
     #[must_use]
     pub fn with_load(&self, position: Vector3<T>, velocity: Vector3<T>) -> State<T> {
         let line = position - self.position;
@@ -70,8 +73,9 @@ impl<T: Real> Uav<T> {
         }
     }
 
-    /// The state with the load at the end of a taut cable of `length` (m) from the `hook` (in body axes from the centre of mass, m)
-    /// along the unit vector `direction` (N), which turns at `rate` (1/s).
+    /// The state with the load at the end of a taut cable of `length` (m) from the `hook` (in body
+    /// axes from the centre of mass, m) along the unit vector `direction` (N), which turns at
+    /// `rate` (1/s).
     #[must_use]
     pub fn with_cable(&self, hook: Vector3<T>, length: T, direction: Vector3<T>, rate: Vector3<T>) -> State<T> {
         let arm = self.attitude * hook;

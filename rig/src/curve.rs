@@ -1,7 +1,8 @@
 //! `PATH_*`, `FOU_*`: the controller's curves, any of them chosen at run time.
 //!
-//! A new curve is a shape here: its name, the parameters that its numbers come from, and how it is made of them. Scenario files, the line
-//! to a target and the reference page of parameters have it from here.
+//! A new curve is a shape here: its name, the parameters that its numbers come from, and how it is
+//! made of them. Scenario files, the line to a target and the reference page of parameters have it
+//! from here.
 
 use controller::{
     Analytic, Bent, Circle, Curve, Curved, Ellipse, Formula, FourierPath, Harmonics, Implicit, Located, OutOfRange,

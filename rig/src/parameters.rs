@@ -93,8 +93,8 @@ impl<T: Real> Parameters<T> {
         Parameters(self.0.map(|value| U::lit(value.to_f64())))
     }
 
-    /// Names the parameter, of those whose names begin with one of `prefixes`, whose value the controller
-    /// refused.
+    /// Names the parameter, of those whose names begin with one of `prefixes`, whose value the
+    /// controller refused.
     pub(crate) fn naming(&self, prefixes: &'static [&'static str]) -> impl Fn(OutOfRange<T>) -> OutOfRange<T> + '_ {
         move |error| {
             let mut entries = f32::table().iter().zip(self.0);

@@ -127,7 +127,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&mut self.law, supervisor => supervisor.take_over(state, applied))
     }
 
-    /// One control step on whatever state there is. The tracking law's reference is at `phase`, rad, now.
+    /// One control step on whatever state there is. The tracking law's reference is at `phase`,
+    /// rad, now.
     #[inline]
     pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
         if let Law::Track(supervisor, [radius, p3, rate]) = &mut self.law {
@@ -176,7 +177,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&self.law, supervisor => supervisor.solution().map(|solution| solution.u_zeta))
     }
 
-    /// The last step's command as rotor speeds, shares of the largest: front right, rear left, front left, rear right.
+    /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
+    /// front left, rear right.
     #[must_use]
     pub fn duties(&self) -> [T; 4] {
         self.actuators().duties(&self.last.command)
@@ -230,7 +232,8 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
     }
 
-    /// Where the last step's command came from and what was found, at the `state` that it was made on.
+    /// Where the last step's command came from and what was found, at the `state` that it was made
+    /// on.
     #[must_use]
     pub fn telemetry(&self, state: &State<T>) -> Telemetry<T> {
         let (vehicle, found) = (self.vehicle(), self.disturbance());

@@ -1,4 +1,5 @@
-//! Whatever bytes come over the link, in whatever order, what goes out is finite and what the rotors can give.
+//! Whatever bytes come over the link, in whatever order, what goes out is finite and what the
+//! rotors can give.
 
 use autopilot::{Autopilot, Boot, Settings};
 use link::MavMessage;
@@ -12,7 +13,8 @@ use crate::station::{Station, driven, frame_of, is_flyable, see, start};
 enum Event {
     /// A state with some of its numbers replaced by any bits.
     State { action: u8, words: Vec<(usize, u32)> },
-    /// A parameter, as a multiple of its default, so that mostly a law can be made of it, or as any bits.
+    /// A parameter, as a multiple of its default, so that mostly a law can be made of it, or as any
+    /// bits.
     Parameter { index: usize, factor: f32, bits: Option<u32> },
     /// A command with its first two parameters.
     Command(u16, f32, f32),

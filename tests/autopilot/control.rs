@@ -158,7 +158,8 @@ fn the_tracking_law_flies_under_the_same_supervisor() {
         assert!(is_flyable(&answer, &settings), "{answer:?}");
         is_lawful &= phase.is_finite();
         let (mode, faults) = (autopilot.mode(), answer.command.faults);
-        // A reference that is not a number gets no answer, and the vehicle holds until it has been calm.
+        // A reference that is not a number gets no answer, and the vehicle holds until it has been
+        // calm.
         let expected = if is_lawful { Mode::Join } else { Mode::Hold };
         assert_eq!((mode, faults.contains(LoadFault::LOAD_FAULT_LAW)), (expected, !is_lawful), "{sequence}");
     }

@@ -1,4 +1,5 @@
-//! Nobody is heard any more, the battery is low, the pilot's switches, and rotors that do not run for ever.
+//! Nobody is heard any more, the battery is low, the pilot's switches, and rotors that do not run
+//! for ever.
 
 use autopilot::{Autopilot, Setting};
 use controller::Mode;

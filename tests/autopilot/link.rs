@@ -1,4 +1,5 @@
-//! The link as MAVLink means it: who is addressed, integers in parameters, arming, modes that are announced, and clocks that restart.
+//! The link as MAVLink means it: who is addressed, integers in parameters, arming, modes that are
+//! announced, and clocks that restart.
 
 use autopilot::{Autopilot, Drive};
 use controller::{Mode, Request};

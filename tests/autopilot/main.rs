@@ -1,5 +1,5 @@
-//! The flight program's decisions: nothing turns unless armed, nothing that is no number gets out, and what the pilot asks for and what goes
-//! wrong lead where the supervisor says.
+//! The flight program's decisions: nothing turns unless armed, nothing that is no number gets out,
+//! and what the pilot asks for and what goes wrong lead where the supervisor says.
 
 mod bytes;
 mod control;

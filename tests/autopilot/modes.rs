@@ -1,4 +1,5 @@
-//! A vehicle in flight on the program, rotors and all: requests over the link, the envelope, and states that fail.
+//! A vehicle in flight on the program, rotors and all: requests over the link, the envelope, and
+//! states that fail.
 
 use autopilot::{Answer, Autopilot, Boot, Setting};
 use controller::{Command, Mode, State, Vector3};
@@ -175,7 +176,8 @@ fn a_policy_that_does_not_resume_waits_to_be_asked_again() {
     flight.until(Mode::Follow, 30.0);
 }
 
-/// States that are missing, stale, or no numbers: coasted over while they are few, then sunk from, and back to the path once they return.
+/// States that are missing, stale, or no numbers: coasted over while they are few, then sunk from,
+/// and back to the path once they return.
 #[test]
 fn failing_states_lead_to_fault_and_back() {
     type Failure = fn(&mut Flight) -> Option<LOAD_STATE_DATA>;

@@ -64,7 +64,8 @@ fn mass(settings: &Settings) -> f32 {
     settings.rig().get(parameter!("VEH_M_LOAD"))
 }
 
-/// Starts, sets the payload's mass to each of `masses`, and keeps it. Returns the flash and what the program believes is kept.
+/// Starts, sets the payload's mass to each of `masses`, and keeps it. Returns the flash and what
+/// the program believes is kept.
 fn session(flash: Torn, masses: &[f32]) -> (Option<Torn>, f32, Vec<Result<(), NotKept>>) {
     let mut settings = Settings::default();
     let Ok(mut store) = Store::open(flash, &mut settings) else { return (None, mass(&settings), vec![]) };
@@ -101,8 +102,8 @@ fn a_full_page_is_said_and_tidied_up_at_the_next_start() {
     }
 }
 
-/// Power fails after every number of bytes in turn: at the next start there is the value before or the one that was being written, and
-/// storing goes on.
+/// Power fails after every number of bytes in turn: at the next start there is the value before or
+/// the one that was being written, and storing goes on.
 #[test]
 fn power_may_fail_at_any_byte() {
     for full in [1, RECORDS / 2, RECORDS - 2] {
@@ -113,7 +114,8 @@ fn power_may_fail_at_any_byte() {
         for bytes in 0..3 * RECORDS * RECORD {
             let torn = Torn { pages: flash.pages, left: Rc::new(Cell::new(bytes)) };
             let mut settings = Settings::default();
-            // What is in the chip when the power fails, whether the program came through its start or not.
+            // What is in the chip when the power fails, whether the program came through its start
+            // or not.
             let chip = Rc::new(Cell::new(None));
             let watched = Watched { flash: torn, chip: Rc::clone(&chip) };
             if let Ok(mut store) = Store::open(watched, &mut settings) {

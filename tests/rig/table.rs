@@ -1,4 +1,5 @@
-//! The table of parameters: every range and default is the controller's, every name its own, and every number its own place.
+//! The table of parameters: every range and default is the controller's, every name its own, and
+//! every number its own place.
 
 use std::collections::HashSet;
 
@@ -28,10 +29,12 @@ fn defaults_are_the_controllers() {
     assert_eq!(of::<f64>().gains(), controller::Gains::spread(ranges::BANDWIDTH.default()).unwrap());
 }
 
-/// What the controller's constructors take alone, at its ends and just beyond, is what the table takes.
+/// What the controller's constructors take alone, at its ends and just beyond, is what the table
+/// takes.
 #[test]
 fn the_controller_takes_each_number_up_to_the_table_s_ends() {
-    // Those that also depend on others: bands on each other, a law on its gains, the rotors' and the thrusts' on what can hover.
+    // Those that also depend on others: bands on each other, a law on its gains, the rotors' and
+    // the thrusts' on what can hover.
     let dependent = |name: &str| {
         ["ENV_", "ROT_", "LIM_", "K", "CTL_LAW", "VEH_", "FOU_", "PATH_NRM", "PATH_MAJ"]
             .iter()

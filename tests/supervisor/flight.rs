@@ -96,7 +96,8 @@ impl<L: Law<f32>> Flight<L> {
         Uav::of(&self.body.state().cast(), &vehicle())
     }
 
-    /// One control period in which the law sees the state or does not, and the UAV's own navigation.
+    /// One control period in which the law sees the state or does not, and the UAV's own
+    /// navigation.
     pub fn step_knowing(&mut self, sees: bool, uav: Option<&Uav<f32>>, request: Request) -> Output<f32> {
         let sampled = self.body.state().cast();
         let measured = Measured { state: sees.then_some(&sampled), uav, specific_force: None };

@@ -61,8 +61,9 @@ enum Unset {
     Refused(Refused<f32>),
 }
 
-/// The value in a PARAM_SET. All parameters are floats. A sender who takes one for an integer writes it either as the integer's own bytes
-/// or as the float that equals it. The bytes of an integer of less than 2²³, read as a float, are far below any float that equals one.
+/// The value in a PARAM_SET. All parameters are floats. A sender who takes one for an integer
+/// writes it either as the integer's own bytes or as the float that equals it. The bytes of an
+/// integer of less than 2²³, read as a float, are far below any float that equals one.
 fn number(request: &PARAM_SET_DATA) -> Result<f32, Unset> {
     const REAL: u8 = MavParamType::MAV_PARAM_TYPE_REAL32 as u8;
     let value = request.param_value;

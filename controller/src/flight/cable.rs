@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::sampled::pull::Pull;
 
-/// The cable is slack when the load is nearer than this share of its length, or when this share of the payload's weight has gone
-/// from the usual pull, for as long as [`SLACKENING`], s.
+/// The cable is slack when the load is nearer than this share of its length, or when this share of
+/// the payload's weight has gone from the usual pull, for as long as [`SLACKENING`], s.
 const SHORTENED: f64 = 0.9;
 const UNWEIGHTED: f64 = 0.5;
 const SLACKENING: f64 = 0.1;
@@ -64,8 +64,8 @@ impl<T: Real> Cable<T> {
         self.learning = T::zero();
     }
 
-    /// Ends a period under `thrust`, N, with the UAV's `velocity` and `attitude` and, if it is known, its `specific` force in body
-    /// axes.
+    /// Ends a period under `thrust`, N, with the UAV's `velocity` and `attitude` and, if it is
+    /// known, its `specific` force in body axes.
     #[inline]
     pub(crate) fn sample(
         &mut self,
@@ -108,8 +108,8 @@ impl<T: Real> Cable<T> {
         self.slackening > T::lit(SLACKENING)
     }
 
-    /// The pull on the UAV that can be believed, per UAV mass, m/s². Nothing lifts, but rotors that are stronger than told seem
-    /// to: as much as they did with the load.
+    /// The pull on the UAV that can be believed, per UAV mass, m/s². Nothing lifts, but rotors that
+    /// are stronger than told seem to: as much as they did with the load.
     #[inline(never)]
     pub(crate) fn pull(&self, vehicle: &Vehicle<T>) -> Vector3<T> {
         let params = vehicle.params();

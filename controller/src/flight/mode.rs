@@ -1,4 +1,5 @@
-//! The supervisor's words: modes, requests, faults, the policy, what it is told and what it answers.
+//! The supervisor's words: modes, requests, faults, the policy, what it is told and what it
+//! answers.
 
 use model::{Channel, Command, OutOfRange, Real, State, Uav};
 use nalgebra::Vector3;
@@ -72,7 +73,8 @@ pub enum Fault {
 pub enum Lost<T> {
     /// Cut the rotors; only [`Request::Off`] leaves the fault.
     Cut,
-    /// Sink with this share of the hover thrust, 0 to 1, and no torque; a good state again leads to hold.
+    /// Sink with this share of the hover thrust, 0 to 1, and no torque; a good state again leads to
+    /// hold.
     Sink(T),
 }
 
@@ -83,7 +85,8 @@ pub struct Policy<T> {
     pub coast: T,
     /// What comes after that.
     pub lost: Lost<T>,
-    /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the vehicle has been calm.
+    /// Whether hold goes back to the path by itself when [`Request::Follow`] still stands, and the
+    /// vehicle has been calm.
     pub resume: bool,
     /// How long the vehicle must have been calm before it rejoins, s.
     pub calm: T,
@@ -94,7 +97,8 @@ pub struct Policy<T> {
 }
 
 impl<T: Real> Default for Policy<T> {
-    /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second; landing at 0.5 m/s; lost below 30 %.
+    /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second;
+    /// landing at 0.5 m/s; lost below 30 %.
     fn default() -> Self {
         Self {
             coast: COAST.default(),
@@ -120,7 +124,8 @@ impl<T: Real> Policy<T> {
     }
 }
 
-/// What a step answers; what the law had to say to it is in [`Supervisor::solution`](crate::Supervisor::solution).
+/// What a step answers; what the law had to say to it is in
+/// [`Supervisor::solution`](crate::Supervisor::solution).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Output<T> {
     /// Finite and within the limits; nothing at all in [`Mode::Off`].
@@ -138,9 +143,10 @@ pub struct Output<T> {
 pub struct Measured<'a, T> {
     /// Load, rod and UAV, where all of it is known.
     pub state: Option<&'a State<T>>,
-    /// The UAV as its own navigation has it; it is taken from the state and a taut cable where this is missing. What hold and
-    /// landing fly, and what a slack cable is told by.
+    /// The UAV as its own navigation has it; it is taken from the state and a taut cable where this
+    /// is missing. What hold and landing fly, and what a slack cable is told by.
     pub uav: Option<&'a Uav<T>>,
-    /// The accelerometer's specific force in body axes, m/s²: the cable's pull, without waiting for the velocity to show it.
+    /// The accelerometer's specific force in body axes, m/s²: the cable's pull, without waiting for
+    /// the velocity to show it.
     pub specific_force: Option<Vector3<T>>,
 }

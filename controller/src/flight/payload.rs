@@ -4,17 +4,20 @@ use model::{Real, Vehicle};
 
 /// How long the payload must seem lost, s: longer than a swing's or a gust's unloading.
 const UNLOADED: f64 = 0.5;
-/// Time, s, before which what the observers find is no sudden change yet, and over which it is averaged.
+/// Time, s, before which what the observers find is no sudden change yet, and over which it is
+/// averaged.
 const LEARNED: f64 = 2.0;
 const KNOWN: f64 = 5.0;
 
-/// The watch on the payload: of all mass, what the observers imply, M = M₀ λ/(λ + d·q), against what they implied before. What
-/// is implied all the time is another thrust or another mass than was told; a payload is lost suddenly.
+/// The watch on the payload: of all mass, what the observers imply, M = M₀ λ/(λ + d·q), against
+/// what they implied before. What is implied all the time is another thrust or another mass than
+/// was told; a payload is lost suddenly.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Payload<T> {
     /// Share of all mass that is left when the payload counts as lost.
     least: T,
-    /// For how long the law has flown, s, up to [`KNOWN`], and the share of all mass implied meanwhile.
+    /// For how long the law has flown, s, up to [`KNOWN`], and the share of all mass implied
+    /// meanwhile.
     learning: T,
     usual: T,
     /// Time without payload, s.

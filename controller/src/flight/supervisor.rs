@@ -17,23 +17,28 @@ use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
 
-/// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as the rotors can, goes first.
+/// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as
+/// the rotors can, goes first.
 const JOINING_THRUST: f64 = 0.75;
-/// With the load on the ground the UAV waits, s, then goes this far aside, m, at this speed, m/s, and lands beside it.
+/// With the load on the ground the UAV waits, s, then goes this far aside, m, at this speed, m/s,
+/// and lands beside it.
 const SETTLED: f64 = 0.5;
 const ASIDE: f64 = 0.6;
 const ASIDE_SPEED: f64 = 0.4;
-/// A take-off rises at this speed, m/s, until the UAV is this much higher than the cable is long, m.
+/// A take-off rises at this speed, m/s, until the UAV is this much higher than the cable is long,
+/// m.
 const RISING: f64 = 0.4;
 const CLEAR: f64 = 1.0;
-/// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any descent.
+/// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any
+/// descent.
 const GROUNDED: f64 = 1.5;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
 const CALM_SPEED: f64 = 1.0;
 const CALM_SWING: f64 = 0.3;
 const CALM_TILT: f64 = 0.95;
 
-/// A law, supervised: it answers every input. It owns the sampled memory and lends it to the law, or to hold.
+/// A law, supervised: it answers every input. It owns the sampled memory and lends it to the law,
+/// or to hold.
 ///
 /// ```text
 ///          arm         hold, follow           risen            follow, calm           path reached
@@ -51,9 +56,9 @@ const CALM_TILT: f64 = 0.95;
 ///    └─ off, from anywhere
 /// ```
 ///
-/// What a request, the flight and the state's absence lead to, from each mode. The tests read this table and try every field.
-/// *Load unseen* is a state missing for longer than [`Policy::coast`] while the UAV's own navigation is there, *no state* the
-/// absence of both:
+/// What a request, the flight and the state's absence lead to, from each mode. The tests read this
+/// table and try every field. *Load unseen* is a state missing for longer than [`Policy::coast`]
+/// while the UAV's own navigation is there, *no state* the absence of both:
 ///
 /// | mode    | `Off` | `Idle` | `Follow` | `Hold`  | `Land` | risen | path reached | margin beyond | payload lost | cable slack | landed | load unseen | no state | none for long |
 /// |---------|-------|--------|----------|---------|--------|-------|--------------|---------------|--------------|-------------|--------|-------------|----------|---------------|
@@ -66,15 +71,17 @@ const CALM_TILT: f64 = 0.95;
 /// | Land    | Off   | Hold   | Hold     | Hold    | Land   |       |              | Land          |              | Land        | Off    | Land        | Land     | Fault         |
 /// | Fault   | Off   | Hold   | Hold     | Hold    | Hold   |       |              | Hold          |              | Hold        |        | Hold        | Fault    | Fault         |
 ///
-/// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold. Hold, landing and take-off fly the
-/// UAV itself and take the cable for a pull; without that navigation they take it for taut, and a load that stands on the ground is
-/// not noticed. A landing sets the load down, goes aside, and sets the UAV down beside it.
+/// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold.
+/// Hold, landing and take-off fly the UAV itself and take the cable for a pull; without that
+/// navigation they take it for taut, and a load that stands on the ground is not noticed. A landing
+/// sets the load down, goes aside, and sets the UAV down beside it.
 ///
-/// From hold the path is joined at once if follow has just been asked for and the vehicle is inside its envelope, and otherwise after
+/// From hold the path is joined at once if follow has just been asked for and the vehicle is inside
+/// its envelope, and otherwise after
 /// [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
 ///
-/// Whatever bits come in, the command that goes out is finite and within the limits, its fault is typed, and nothing that came in stays: the
-/// next good state is flown on.
+/// Whatever bits come in, the command that goes out is finite and within the limits, its fault is
+/// typed, and nothing that came in stays: the next good state is flown on.
 #[derive(Clone, Debug)]
 pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     sampler: Sampler<T, A>,
@@ -90,7 +97,8 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     hold: Hold<T>,
     cable: Cable<T>,
     payload: Payload<T>,
-    /// Time since the load has been set down in a landing, s, and the velocity, m/s, with which the UAV then goes aside.
+    /// Time since the load has been set down in a landing, s, and the velocity, m/s, with which the
+    /// UAV then goes aside.
     set_down: T,
     aside: Vector3<T>,
     /// p3 of the UAV when the last take-off, hold or landing began, m.
@@ -141,7 +149,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.mode
     }
 
-    /// The law's solution of the last step, if the law flew it: the command before limits, and the numbers behind it.
+    /// The law's solution of the last step, if the law flew it: the command before limits, and the
+    /// numbers behind it.
     pub fn solution(&self) -> Option<&Solution<T, L::Xi>> {
         self.is_by_law.then(|| self.law.solution())
     }
@@ -166,7 +175,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.sampler.disturbance()
     }
 
-    /// Takes over a flying vehicle, to which `applied` has been applied until now: from [`Mode::Off`] to [`Mode::Hold`].
+    /// Takes over a flying vehicle, to which `applied` has been applied until now: from
+    /// [`Mode::Off`] to [`Mode::Hold`].
     ///
     /// # Errors
     /// A part of `state` or of `applied` is no number or out of any range; nothing has changed.
@@ -194,7 +204,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         Ok(())
     }
 
-    /// Changes what the actuators can apply, in flight too: less than hover's thrust may then be the truth.
+    /// Changes what the actuators can apply, in flight too: less than hover's thrust may then be
+    /// the truth.
     ///
     /// # Errors
     /// A parameter of `actuation` is out of range; nothing has changed.
@@ -202,14 +213,15 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.sampler.set_actuation(actuation)
     }
 
-    /// The command for the coming hold. Call once every period, with the state sampled now, if there is one, and what the pilot
-    /// wants.
+    /// The command for the coming hold. Call once every period, with the state sampled now, if
+    /// there is one, and what the pilot wants.
     #[inline]
     pub fn step(&mut self, sampled: Option<&State<T>>, request: Request) -> Output<T> {
         self.step_measured(&Measured { state: sampled, uav: None, specific_force: None }, request)
     }
 
-    /// The same with all that was measured. Where the load is not known but the UAV is, hold flies that after [`Policy::coast`].
+    /// The same with all that was measured. Where the load is not known but the UAV is, hold flies
+    /// that after [`Policy::coast`].
     #[inline]
     pub fn step_measured(&mut self, measured: &Measured<'_, T>, request: Request) -> Output<T> {
         if request != self.request {
@@ -425,7 +437,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
     }
 
-    /// How the vehicle stands in the envelope under what is being applied; the path's margins are the law's to say.
+    /// How the vehicle stands in the envelope under what is being applied; the path's margins are
+    /// the law's to say.
     #[inline(never)]
     fn standing(&self, sampled: &State<T>) -> Standing {
         let margins = Margins::of_motion(self.sampler.vehicle(), sampled, self.sampler.applied().thrust);
@@ -511,7 +524,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.output(command, warning)
     }
 
-    /// The velocity that hold goes for: none, or that of a take-off, or that of a landing, the load down first and then the UAV beside it.
+    /// The velocity that hold goes for: none, or that of a take-off, or that of a landing, the load
+    /// down first and then the UAV beside it.
     #[inline(never)]
     fn wanted_velocity(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Vector3<T> {
         match self.mode {

@@ -1,6 +1,7 @@
-//! The law to fall back on: brings the UAV to rest and keeps its altitude, from any state whatever, with nothing but its own
-//! position, velocity, attitude and rates. It knows no cable: what hangs from the UAV is an [observed](crate::sampled::pull)
-//! pull f, which has a sign and a bound, so that neither a slack cable nor a wrong rod can mislead it.
+//! The law to fall back on: brings the UAV to rest and keeps its altitude, from any state whatever,
+//! with nothing but its own position, velocity, attitude and rates. It knows no cable: what hangs
+//! from the UAV is an [observed](crate::sampled::pull) pull f, which has a sign and a bound, so
+//! that neither a slack cable nor a wrong rod can mislead it.
 //!
 //! The force T b3 that gives the UAV an acceleration a is
 //!
@@ -10,8 +11,8 @@
 //! ω̇ = k_R θ − k_ω ω,   T = f·b3,   T b3 within a cone about e3, θ the rotation from b3 to it
 //! ```
 //!
-//! The target r* starts at the UAV and at its level velocity, which it loses within [`BRAKING`]; a fall is stopped as hard as
-//! the rotors can.
+//! The target r* starts at the UAV and at its level velocity, which it loses within [`BRAKING`]; a
+//! fall is stopped as hard as the rotors can.
 
 use model::{Command, Real, State, Uav, Vehicle};
 use nalgebra::Vector3;
@@ -26,7 +27,8 @@ const INTEGRAL_GAIN: f64 = 0.3;
 const SWING_GAIN: f64 = 0.8;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
-/// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it stays below this, m/s².
+/// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
+/// stays below this, m/s².
 const SETTLING: f64 = 1.0;
 const INTEGRAL_BOUND: f64 = 3.0;
 /// Tangent of the cone's angle, 35°.
@@ -63,13 +65,14 @@ impl<T: Real> Hold<T> {
         }
     }
 
-    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means that the ground carries it.
+    /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
+    /// that the ground carries it.
     pub(crate) fn left_above(&self, uav: &Uav<T>) -> T {
         self.target.z - uav.position.z
     }
 
-    /// The command at `uav` under a `pull` (m/s², per UAV mass), and the target one `period` (s) on, on its way to `velocity` (N,
-    /// m/s). `swing` is L q̇ of a trusted rod.
+    /// The command at `uav` under a `pull` (m/s², per UAV mass), and the target one `period` (s)
+    /// on, on its way to `velocity` (N, m/s). `swing` is L q̇ of a trusted rod.
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
@@ -138,7 +141,8 @@ impl<T: Real> Hold<T> {
     }
 }
 
-/// What the UAV yields to: L q̇ of the rod, or, while that may stand on its head in balance, some motion to topple it.
+/// What the UAV yields to: L q̇ of the rod, or, while that may stand on its head in balance, some
+/// motion to topple it.
 pub(crate) fn swing<T: Real>(vehicle: &Vehicle<T>, state: &State<T>) -> Vector3<T> {
     let mut swing = state.rod_rate * vehicle.params().rod_length;
     if state.rod.z < T::lit(BALANCED) {

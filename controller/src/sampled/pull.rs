@@ -1,20 +1,20 @@
-//! What pulls at the UAV, observed from its own motion alone: the cable first of all, whatever hangs from it and wherever it
-//! points.
+//! What pulls at the UAV, observed from its own motion alone: the cable first of all, whatever
+//! hangs from it and wherever it points.
 //!
 //! ```text
 //! v̂˙ = g e3 − (T/m_Q) b3 + f + 2 o e,   f˙ = o² e,   e = v_Q − v̂
 //! ```
 //!
-//! with T the thrust that is applied, discretized with both poles at e^(−o h); or, where an accelerometer tells the specific
-//! force f_B, f follows R f_B + (T/m_Q) b3 with the bandwidth o.
+//! with T the thrust that is applied, discretized with both poles at e^(−o h); or, where an
+//! accelerometer tells the specific force f_B, f follows R f_B + (T/m_Q) b3 with the bandwidth o.
 
 use model::{Real, Vehicle};
 use nalgebra::Vector3;
 
 /// o, rad/s: faster than a swing, slower than noise.
 const BANDWIDTH: f64 = 10.0;
-/// Largest pull that is believed, in payload weights, and how much of it may be level beside what is vertical: a cable pulls
-/// down, wind sideways, and nothing lifts.
+/// Largest pull that is believed, in payload weights, and how much of it may be level beside what
+/// is vertical: a cable pulls down, wind sideways, and nothing lifts.
 const STRONGEST: f64 = 3.0;
 const LEVEL: f64 = 0.3;
 
@@ -81,7 +81,8 @@ impl<T: Real> Pull<T> {
         self.velocity = *velocity;
     }
 
-    /// Its part along n3, N: what hangs from the UAV, less what the rotors give beyond what they are told.
+    /// Its part along n3, N: what hangs from the UAV, less what the rotors give beyond what they
+    /// are told.
     pub(crate) fn down(&self, vehicle: &Vehicle<T>) -> T {
         self.force.z * vehicle.params().uav_mass
     }

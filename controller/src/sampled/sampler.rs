@@ -267,7 +267,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.observer.reset(state);
     }
 
-    /// Before a sample with a cable that does not pull, of which the observers can make nothing: what they know, to be
+    /// Before a sample with a cable that does not pull, of which the observers can make nothing:
+    /// what they know, to be
     /// [kept](Self::keep) after it.
     #[cold]
     pub(crate) fn freeze(&mut self, sampled: &State<T>) -> Disturbance<T> {
@@ -280,7 +281,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.observer.keep(known);
     }
 
-    /// The UAV where its command acts: its own position and velocity, after the time that attitude and body rate look `ahead`.
+    /// The UAV where its command acts: its own position and velocity, after the time that attitude
+    /// and body rate look `ahead`.
     pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
         let Memory { vehicle, horizon, actuators, observer, .. } = &self.memory;
         let applied = actuators.applied();

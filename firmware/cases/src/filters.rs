@@ -1,4 +1,5 @@
-//! The estimator's filters as they fly, on readings about a hover: steps of whole cycles, so that the mean is that of a flight.
+//! The estimator's filters as they fly, on readings about a hover: steps of whole cycles, so that
+//! the mean is that of a flight.
 
 use controller::{Matrix3, Real, State, Vector3, VehicleParams};
 use estimator::{Drag, Estimate, Fix, Imu, Motion, Navigation, NavigationParams, Payload, PayloadParams};
@@ -10,7 +11,8 @@ const PERIOD: f32 = 0.002;
 const GRAVITY: f32 = 9.81;
 /// Thrust of the paper's vehicle at hover, N.
 const HOVER: f32 = 3.0 * GRAVITY;
-/// Periods from one reading to the next: of the receiver at 10 Hz, the magnetometer at 20 Hz, the barometer at 25 Hz.
+/// Periods from one reading to the next: of the receiver at 10 Hz, the magnetometer at 20 Hz, the
+/// barometer at 25 Hz.
 const FIX: u32 = 50;
 const FIELD: u32 = 25;
 const HEIGHT: u32 = 20;

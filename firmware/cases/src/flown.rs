@@ -1,4 +1,5 @@
-//! The controller as a board flies it: made of parameters, on a path chosen at run time, with limits and four rotors.
+//! The controller as a board flies it: made of parameters, on a path chosen at run time, with
+//! limits and four rotors.
 
 use controller::{Request, State};
 use rig::{Output, Rig, parameter, run};
@@ -11,7 +12,8 @@ use crate::{Case, Digest, Random};
 pub struct Flown(Rig<f32>);
 
 impl Flown {
-    /// The default parameters, with the integral action that the other cases have. `None` if one is refused.
+    /// The default parameters, with the integral action that the other cases have. `None` if one is
+    /// refused.
     pub fn new() -> Option<Self> {
         let mut parameters = rig::Parameters::default();
         parameters.set_run(run!("KI_1" to "KI_3"), INTEGRAL).ok()?;

@@ -27,7 +27,8 @@ use std::process::ExitCode;
 /// What a command ends with: an exit status, or an error to be printed.
 type Ended = Result<ExitCode, Box<dyn Error>>;
 
-/// Flies a payload-following multirotor in simulation: the f32 controller in the loop with an f64 plant.
+/// Flies a payload-following multirotor in simulation: the f32 controller in the loop with an f64
+/// plant.
 ///
 /// Without a command it does `figures`.
 #[derive(Parser)]
@@ -56,7 +57,8 @@ struct Common {
     /// Print nothing but errors.
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Folder for reports, made if it is not there (out if not given); for `fit`, the file of the path.
+    /// Folder for reports, made if it is not there (out if not given); for `fit`, the file of the
+    /// path.
     #[arg(long, global = true, value_name = "PATH")]
     out: Option<PathBuf>,
 }
@@ -85,8 +87,8 @@ struct Logs {
 enum Command {
     /// Fly scenario files and report on them.
     ///
-    /// A FILE is a TOML file, or the name of a built-in scenario. Writes a CSV log of each flight, figures, report.html and
-    /// summary.json.
+    /// A FILE is a TOML file, or the name of a built-in scenario. Writes a CSV log of each flight,
+    /// figures, report.html and summary.json.
     #[command(after_help = "Examples:
   hil-sim run my-flight.toml
   hil-sim run a.toml b.toml --out results
@@ -97,8 +99,8 @@ enum Command {
         /// Scenario files, or names of built-in scenarios.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
-        /// Stop at the first invalid floating-point operation inside the law (0/0, the root of a negative number, …), and say
-        /// which and where; RUST_BACKTRACE=1 says how it came to it.
+        /// Stop at the first invalid floating-point operation inside the law (0/0, the root of a
+        /// negative number, …), and say which and where; RUST_BACKTRACE=1 says how it came to it.
         #[arg(long)]
         trap: bool,
         /// Fly even what asks more of the vehicle than its [limits] or its actuators allow.
@@ -114,9 +116,10 @@ enum Command {
     Figures(Logs),
     /// Evaluate the law for JSON objects, one a line, on standard input.
     ///
-    /// Writes one JSON object a line, in order. A bad line gives {"error": "..."} in its place and a non-zero exit status at
-    /// the end. "arithmetic" is "f32" or "f64" (the controller) or "witness" (Lie derivatives in the paper's coordinates;
-    /// adds "b" and "A"). The state is taken as it is, without prediction; "integral" and "k_integral" may be left out.
+    /// Writes one JSON object a line, in order. A bad line gives {"error": "..."} in its place and
+    /// a non-zero exit status at the end. "arithmetic" is "f32" or "f64" (the controller) or
+    /// "witness" (Lie derivatives in the paper's coordinates; adds "b" and "A"). The state is taken
+    /// as it is, without prediction; "integral" and "k_integral" may be left out.
     #[command(after_help = eval::EXAMPLES)]
     Eval,
     /// Print every key of a scenario file, with unit, range, default and meaning.
@@ -124,19 +127,20 @@ enum Command {
     Keys,
     /// Say whether paths can be flown, before anyone takes off.
     ///
-    /// Walks each curve once round: is it closed, smooth, regular, free of self-crossings? Then what it asks of the vehicle at its
-    /// speed, and the highest constant speed within the limits. Refuses with the place. The exit status is 0 if all can be flown
-    /// within their limits.
+    /// Walks each curve once round: is it closed, smooth, regular, free of self-crossings? Then
+    /// what it asks of the vehicle at its speed, and the highest constant speed within the limits.
+    /// Refuses with the place. The exit status is 0 if all can be flown within their limits.
     #[command(after_help = check::EXAMPLES)]
     Check {
         /// Scenario files, files with a [path], or names of built-in scenarios.
         #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
     },
-    /// Fly thousands of flights, each drawn from distributions, and say how often the law does what it should.
+    /// Fly thousands of flights, each drawn from distributions, and say how often the law does what
+    /// it should.
     ///
-    /// Same seed, same table, whatever the number of threads. Interrupted, the same command goes on. Writes runs.csv (a row a flight),
-    /// summary.json and campaign.html.
+    /// Same seed, same table, whatever the number of threads. Interrupted, the same command goes
+    /// on. Writes runs.csv (a row a flight), summary.json and campaign.html.
     #[command(after_help = campaign::EXAMPLES)]
     Campaign(campaign::CampaignArguments),
     /// Put the shards of a campaign together: their tables become the whole campaign's.
@@ -148,35 +152,43 @@ enum Command {
         #[command(flatten)]
         tables: campaign::Tables,
     },
-    /// Compare the law as published, with integral action, with disturbance observers, and trajectory tracking with them.
+    /// Compare the law as published, with integral action, with disturbance observers, and
+    /// trajectory tracking with them.
     ///
-    /// Each flies the same random starts in each case: forces, wind, gusts, wrong masses, lengths, thrust and inertia, lag, latency, noise,
-    /// each alone and all together. Writes compare.json and compare.html.
+    /// Each flies the same random starts in each case: forces, wind, gusts, wrong masses, lengths,
+    /// thrust and inertia, lag, latency, noise, each alone and all together. Writes compare.json
+    /// and compare.html.
     #[command(after_help = compare::EXAMPLES)]
     Compare(compare::CompareArguments),
-    /// Fly the law on an estimate of its state: from RTK, motion capture or a plain receiver, in calm and gusts, told right and wrong.
+    /// Fly the law on an estimate of its state: from RTK, motion capture or a plain receiver, in
+    /// calm and gusts, told right and wrong.
     ///
     /// Each case from random starts for 60 s; the full state stands beside. Writes estimate.json.
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArguments),
-    /// Path following against trajectory tracking, start by start: where the paper's claims hold, and where they do not.
+    /// Path following against trajectory tracking, start by start: where the paper's claims hold,
+    /// and where they do not.
     #[command(after_help = policies::EXAMPLES)]
     Policies(policies::PolicyArguments),
-    /// Propose poles and observer bandwidths for a scenario's vehicle, rate, latency, rotor lag and noise.
+    /// Propose poles and observer bandwidths for a scenario's vehicle, rate, latency, rotor lag and
+    /// noise.
     ///
-    /// Flies a small campaign over a grid of both from random starts beside the path, prints what each does, and says what the proposal
-    /// trades. Writes tune.toml (a [controller] to put in place of the scenario's own) and tune.json.
+    /// Flies a small campaign over a grid of both from random starts beside the path, prints what
+    /// each does, and says what the proposal trades. Writes tune.toml (a [controller] to put in
+    /// place of the scenario's own) and tune.json.
     #[command(after_help = tune::EXAMPLES)]
     Tune(tune::TuneArguments),
     /// Fit a closed smooth curve to waypoints.
     ///
-    /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and its properties.
+    /// A Fourier series with as few harmonics as keep every waypoint within the tolerance, and its
+    /// properties.
     #[command(after_help = fit::EXAMPLES)]
     Fit(fit::FitArguments),
     /// Fly with the controller at the other end of a serial line, a socket, or in an emulator.
     ///
-    /// In lockstep, each state is one control step of the target, and the flight is the same, bit by bit, as in this program. Same
-    /// tables and report as `run`, and the link's and the target's numbers beside them (hil.json).
+    /// In lockstep, each state is one control step of the target, and the flight is the same, bit
+    /// by bit, as in this program. Same tables and report as `run`, and the link's and the target's
+    /// numbers beside them (hil.json).
     #[command(after_help = hil::EXAMPLES)]
     Hil {
         #[command(flatten)]
@@ -191,19 +203,21 @@ enum Command {
         #[arg(value_name = "FILE", default_value = "out")]
         file: PathBuf,
     },
-    /// Be the world of a scenario for a controller of your own: one JSON command a line in, one JSON
-    /// state a line out.
+    /// Be the world of a scenario for a controller of your own: one JSON command a line in, one
+    /// JSON state a line out.
     ///
-    /// The state at the start comes first. A line {"thrust": T, "torque": [..]} (N, N·m in body axes)
-    /// passes one control period, or "periods" of them, and is answered with the state then. A bad
-    /// line gives {"error": "..."}, passes nothing, and makes the exit status at the end non-zero.
+    /// The state at the start comes first. A line {"thrust": T, "torque": [..]} (N, N·m in body
+    /// axes) passes one control period, or "periods" of them, and is answered with the state then.
+    /// A bad line gives {"error": "..."}, passes nothing, and makes the exit status at the end
+    /// non-zero.
     #[command(after_help = plant::EXAMPLES)]
     Plant {
         /// A scenario file, or the name of a built-in scenario.
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },
-    /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to connect to.
+    /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to
+    /// connect to.
     #[command(after_help = hil::TARGET_EXAMPLES)]
     Target {
         /// Where: unix:PATH or tcp:HOST:PORT.

@@ -1,7 +1,8 @@
-//! Every key of a scenario file: its unit, range, default and meaning, as `hil-sim keys` prints them and `docs/scenario.md` holds them.
+//! Every key of a scenario file: its unit, range, default and meaning, as `hil-sim keys` prints
+//! them and `docs/scenario.md` holds them.
 //!
-//! Tests hold this table to what reads the files: each key that is read stands here, each range is the one that is refused beyond, and
-//! each default the value that is taken.
+//! Tests hold this table to what reads the files: each key that is read stands here, each range is
+//! the one that is refused beyond, and each default the value that is taken.
 
 use std::fmt::Write as _;
 
@@ -29,7 +30,8 @@ pub struct Key {
     pub unit: &'static str,
     /// What it may be.
     pub values: Values,
-    /// As TOML, or in brackets what goes for one that is left out; empty for one that must be given.
+    /// As TOML, or in brackets what goes for one that is left out; empty for one that must be
+    /// given.
     pub default: &'static str,
     /// What it is.
     pub meaning: &'static str,

@@ -1,4 +1,5 @@
-//! The flight loop: a pilot at its rate, the [world](crate::world) between samples, and a watcher that sees every period.
+//! The flight loop: a pilot at its rate, the [world](crate::world) between samples, and a watcher
+//! that sees every period.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -9,7 +10,8 @@ use super::sight::Sight;
 use crate::describe::scenario::Scenario;
 use crate::world::Seed;
 
-/// A flight this far from its path is lost and ends, m; one that starts further off, at twice its distance then.
+/// A flight this far from its path is lost and ends, m; one that starts further off, at twice its
+/// distance then.
 pub const LOST_M: f64 = 100.0;
 
 /// How a pilot begins, and begins again after an obstacle.
@@ -26,7 +28,8 @@ pub enum Entry {
 pub struct Control<'a> {
     /// Ends the flight early once true.
     pub stop: &'a AtomicBool,
-    /// Called now and then with the seconds flown since the last call; in all with the whole duration.
+    /// Called now and then with the seconds flown since the last call; in all with the whole
+    /// duration.
     pub progress: &'a (dyn Fn(f64) + Sync),
 }
 
@@ -50,7 +53,8 @@ pub struct Plan<'a> {
     pub entry: Entry,
     /// Where a body that comes to it ends the flight, m; negative is above the origin.
     pub ground_p3: Option<f64>,
-    /// Control periods from one d_C to the next: a nearest point can cost more than a step of the law.
+    /// Control periods from one d_C to the next: a nearest point can cost more than a step of the
+    /// law.
     pub distance_every: u64,
     /// Who watches over it.
     pub control: Control<'a>,
@@ -87,7 +91,8 @@ impl End {
     }
 }
 
-/// What a watcher sees at every control period, and once more at the end, if the state is then one to be seen.
+/// What a watcher sees at every control period, and once more at the end, if the state is then one
+/// to be seen.
 pub struct Moment<'a> {
     /// Control periods since the start.
     pub step: u64,
@@ -108,7 +113,8 @@ pub struct Moment<'a> {
 /// Control periods between two looks at `stop` and two calls of `progress`.
 const CHECK_PERIODS: u64 = 256;
 
-/// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the controller takes for one.
+/// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the
+/// controller takes for one.
 pub fn fly(
     scenario: &Scenario,
     plan: &Plan<'_>,

@@ -1,4 +1,5 @@
-//! What a law sees through an estimator: instruments, navigation, payload filter, all in the flight's own arithmetic.
+//! What a law sees through an estimator: instruments, navigation, payload filter, all in the
+//! flight's own arithmetic.
 
 use controller::{Command, Matrix3, State, Vector3};
 use estimator::{
@@ -13,7 +14,8 @@ use crate::world::sensors::gnss::FixReading;
 use crate::world::sensors::mocap::PoseReading;
 use crate::world::{InstrumentModel, Seed, World};
 
-/// Motion capture's own word on its accuracy: a little more than its noise, since its frames are not all independent.
+/// Motion capture's own word on its accuracy: a little more than its noise, since its frames are
+/// not all independent.
 const TRUST: f64 = 1.2;
 
 /// An estimator at work in a flight.
@@ -27,7 +29,8 @@ pub struct Sight {
     has_jumped: bool,
 }
 
-/// Thrust as an autopilot without rotor speeds has it: the command, late and through a first-order lag.
+/// Thrust as an autopilot without rotor speeds has it: the command, late and through a first-order
+/// lag.
 struct RotorModel {
     line: VecDeque<f64>,
     given: f64,
@@ -57,8 +60,9 @@ impl RotorModel {
 }
 
 impl Sight {
-    /// The estimator of `scenario` for a flight that starts at `state` of the body under `hover` thrust, N. It is told the UAV's motion with errors
-    /// of a settled navigation, and that the rod hangs.
+    /// The estimator of `scenario` for a flight that starts at `state` of the body under `hover`
+    /// thrust, N. It is told the UAV's motion with errors of a settled navigation, and that the rod
+    /// hangs.
     ///
     /// # Errors
     /// [`OutOfRange`] for a scenario's number that the filters refuse.

@@ -8,10 +8,10 @@
 //! F = −μ N v_t/√(|v_t|² + v_0²)           Coulomb's friction, but for a creep far below v_0 where it would hold
 //! ```
 //!
-//! k and c are given by what they mean for the body that stands on them: δ = m g/k is how far it sinks
-//! in by its own weight, and c is 2 ζ √(k m). A body that falls on it keeps this share of its speed
-//! (Schwager and Pöschel, *Coefficient of restitution and linear-dashpot model revisited*, Granular
-//! Matter 9, 2007; ζ below ½√2, gravity neglected):
+//! k and c are given by what they mean for the body that stands on them: δ = m g/k is how far it
+//! sinks in by its own weight, and c is 2 ζ √(k m). A body that falls on it keeps this share of its
+//! speed (Schwager and Pöschel, *Coefficient of restitution and linear-dashpot model revisited*,
+//! Granular Matter 9, 2007; ζ below ½√2, gravity neglected):
 //!
 //! ```text
 //! e = exp(−ζ/√(1−ζ²) (π − atan(2 ζ √(1−ζ²)/(1 − 2 ζ²))))

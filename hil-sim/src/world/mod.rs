@@ -190,7 +190,8 @@ impl World {
         &self.body
     }
 
-    /// Thrust that the rotors' speeds stand for, N: what they really give is that times the thrust scale.
+    /// Thrust that the rotors' speeds stand for, N: what they really give is that times the thrust
+    /// scale.
     #[must_use]
     pub fn rotor_thrust(&self) -> f64 {
         self.actuators.given().thrust

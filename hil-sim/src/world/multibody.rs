@@ -1,5 +1,6 @@
-//! The slung-load system on R³ × S² × SO(3), with forces from outside on either body and a disturbing torque: what campaigns
-//! fly. A tumbling vehicle has no chart to fall off, and no step takes a sine.
+//! The slung-load system on R³ × S² × SO(3), with forces from outside on either body and a
+//! disturbing torque: what campaigns fly. A tumbling vehicle has no chart to fall off, and no step
+//! takes a sine.
 //!
 //! By virtual work, with the payload at p and the UAV at p − L q, for all δp and all δq ⊥ q,
 //!
@@ -7,7 +8,8 @@
 //! (m_L v̇ − F_L − m_L g e3)·δp + (m_Q (v̇ − L q̈) − F_Q − m_Q g e3 + T b3)·(δp − L δq) = 0
 //! ```
 //!
-//! δp gives the motion of the centre of mass, δq the rod's across itself, and |q| = 1 the rest, q·q̈ = −|q̇|²:
+//! δp gives the motion of the centre of mass, δq the rod's across itself, and |q| = 1 the rest,
+//! q·q̈ = −|q̇|²:
 //!
 //! ```text
 //! M v̇ = F_L + F_Q + M g e3 − T b3 + m_Q L q̈
@@ -15,9 +17,9 @@
 //! J ω̇ = J ω × ω + τ + τ_d,   Ṙ = R ω^
 //! ```
 //!
-//! Neither [`plant`](witness::plant) nor the `controller` crate has a part in it; the former is its witness in the tests. Attitude is carried as a
-//! quaternion; after each Runge-Kutta step rod, rod rate and quaternion are projected back, which keeps the method's
-//! order.
+//! Neither [`plant`](witness::plant) nor the `controller` crate has a part in it; the former is its
+//! witness in the tests. Attitude is carried as a quaternion; after each Runge-Kutta step rod, rod
+//! rate and quaternion are projected back, which keeps the method's order.
 
 use controller::{Command, Matrix3, State, Vector3};
 
@@ -85,7 +87,8 @@ impl Multibody {
         &self.vehicle
     }
 
-    /// Another payload mass, kg, from now on, all velocities kept: the mass joins or leaves at the payload's velocity.
+    /// Another payload mass, kg, from now on, all velocities kept: the mass joins or leaves at the
+    /// payload's velocity.
     pub fn set_payload_mass(&mut self, mass: f64) {
         self.vehicle.payload_mass = mass;
     }
@@ -122,8 +125,9 @@ impl Multibody {
         acceleration(&self.vehicle, &self.x, command, loads)
     }
 
-    /// One Runge-Kutta step over `step` seconds, then the projection. `command` gives thrust and torque, and `loads` what the
-    /// velocities of payload and UAV (N, m/s) bring with them, at a time since the step's start.
+    /// One Runge-Kutta step over `step` seconds, then the projection. `command` gives thrust and
+    /// torque, and `loads` what the velocities of payload and UAV (N, m/s) bring with them, at a
+    /// time since the step's start.
     #[inline]
     pub fn advance(
         &mut self,
@@ -247,7 +251,8 @@ pub(super) fn quaternion_rate(quaternion: [f64; 4], omega: &Vector3<f64>) -> [f6
     ]
 }
 
-/// A quaternion (scalar first, unit to within rounding) of a rotation: by the largest of its four parts, as Shepperd (1978).
+/// A quaternion (scalar first, unit to within rounding) of a rotation: by the largest of its four
+/// parts, as Shepperd (1978).
 pub(super) fn quaternion(r: &Matrix3<f64>) -> [f64; 4] {
     // Four times the products of each part with all parts.
     let trace = r.m11 + r.m22 + r.m33;

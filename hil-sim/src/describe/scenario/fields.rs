@@ -433,7 +433,8 @@ fn body_rate(phi: f64, psi: f64, [phi_dot, theta_dot, psi_dot]: [f64; 3]) -> [f6
 mod tests {
     #[test]
     fn body_rate_of_the_papers_initial_state_is_the_reference_one() {
-        // fig5_int_vd1 of the reference trajectories: φ = 10°, ψ = 40°, (φ̇, θ̇, ψ̇) = (0, 0.1, −0.2).
+        // fig5_int_vd1 of the reference trajectories: φ = 10°, ψ = 40°, (φ̇, θ̇, ψ̇) = (0, 0.1,
+        // −0.2).
         let omega = super::body_rate(10_f64.to_radians(), 40_f64.to_radians(), [0.0, 0.1, -0.2]);
         let reference = [0.0633022221559489, 0.07544065067354891, -0.21736481776669306];
         for (computed, wanted) in omega.iter().zip(reference) {

@@ -88,7 +88,8 @@ pub struct Scenario {
     pub actuators: Actuators,
     /// The control loop's clock.
     pub timing: Timing,
-    /// What finds the state from the instruments; the law is given the sensors' channels if left out.
+    /// What finds the state from the instruments; the law is given the sensors' channels if left
+    /// out.
     pub estimator: Option<EstimatorSpec>,
     /// Of all that is random.
     pub seed: u64,

@@ -1,4 +1,5 @@
-//! How well the law flies on an estimate: a table of cases, each from random starts, with the full state beside it.
+//! How well the law flies on an estimate: a table of cases, each from random starts, with the full
+//! state beside it.
 
 mod cases;
 mod measure;
@@ -55,7 +56,8 @@ pub struct Row {
     pub mass_found_kg: Option<f64>,
     /// Median of the thrust scale that was found.
     pub thrust_found: Option<f64>,
-    /// Largest step of the thrust commanded from one period to the next in the last quarters, of its mean.
+    /// Largest step of the thrust commanded from one period to the next in the last quarters, of
+    /// its mean.
     pub thrust_step: f64,
 }
 
@@ -70,7 +72,8 @@ pub struct Table {
     pub rows: Vec<Row>,
 }
 
-/// A flight that ends so far off the path does not count as flown, m. A plain receiver's metres are its own.
+/// A flight that ends so far off the path does not count as flown, m. A plain receiver's metres are
+/// its own.
 const ASTRAY_M: f64 = 10.0;
 
 /// The scenario that every case starts from.

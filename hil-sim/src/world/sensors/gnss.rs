@@ -5,9 +5,10 @@
 //! velocity = antenna's + white
 //! ```
 //!
-//! each component by itself, horizontal and down apart. What the receiver states of its accuracy is the white and slow deviations together, as of
-//! the kind of solution that it has: RTK fixed, float (`float` is when), or plain (Misra and Enge, *Global Positioning System*, 2nd ed.,
-//! ch. 5 and 7 for the orders of magnitude).
+//! each component by itself, horizontal and down apart. What the receiver states of its accuracy is
+//! the white and slow deviations together, as of the kind of solution that it has: RTK fixed, float
+//! (`float` is when), or plain (Misra and Enge, *Global Positioning System*, 2nd ed., ch. 5 and 7
+//! for the orders of magnitude).
 
 use controller::{State, Vector3};
 use serde::Deserialize;
@@ -183,7 +184,8 @@ impl GnssModel {
         Self { gnss, stream, slow, next_s: 0.0, line: VecDeque::new() }
     }
 
-    /// The fix that comes at `t_s`, if one does; another may be taken of the UAV's place and velocity.
+    /// The fix that comes at `t_s`, if one does; another may be taken of the UAV's place and
+    /// velocity.
     pub(super) fn read(
         &mut self,
         t_s: f64,

@@ -1,7 +1,7 @@
 //! An inertial measurement unit on a vibrating frame.
 //!
-//! The accelerometer gives the mean specific force of its place over a control period, f = Rᵀ(Δv/h − g e3) with R of the period's middle, the
-//! gyro the newest rate; both with
+//! The accelerometer gives the mean specific force of its place over a control period, f = Rᵀ(Δv/h
+//! − g e3) with R of the period's middle, the gyro the newest rate; both with
 //!
 //! ```text
 //! reading = clip((1 + scale) M (true + vibration) + bias + noise),   bias: constant + random walk
@@ -9,8 +9,9 @@
 //! vibration: Σ A_k (T/T_hover) sin(k φ),  φ̇ = 2π f_hover √(T/T_hover),  k = 1, 2
 //! ```
 //!
-//! Vibration is sampled `sample_hz` times a second and averaged over the period, so lines of the rotors alias as they do in a driver that
-//! averages (IEEE Std 952 and 1293 for the terms of noise; a rotor's imbalance is a line at its speed, growing with its square, which thrust is).
+//! Vibration is sampled `sample_hz` times a second and averaged over the period, so lines of the
+//! rotors alias as they do in a driver that averages (IEEE Std 952 and 1293 for the terms of noise;
+//! a rotor's imbalance is a line at its speed, growing with its square, which thrust is).
 
 use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;
@@ -22,15 +23,19 @@ use crate::world::random::Stream;
 /// Standard gravity, m/s²: data sheets count in it.
 const STANDARD_GRAVITY: f64 = 9.80665;
 
-/// Parts, by their data sheets' typical figures **at rest**. In flight the accelerometer is some ten times as noisy.
+/// Parts, by their data sheets' typical figures **at rest**. In flight the accelerometer is some
+/// ten times as noisy.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "kebab-case")]
 pub enum ImuPart {
-    /// Bosch BMI088, BST-BMI088-DS001: 160 to 190 µg/√Hz, ±20 mg; 0.014 °/s/√Hz, ±1 °/s; ±24 g, ±2000 °/s.
+    /// Bosch BMI088, BST-BMI088-DS001: 160 to 190 µg/√Hz, ±20 mg; 0.014 °/s/√Hz, ±1 °/s; ±24 g,
+    /// ±2000 °/s.
     Bmi088,
-    /// TDK `InvenSense` ICM-42688-P, DS-000347: 65 to 70 µg/√Hz, ±20 mg; 0.0028 °/s/√Hz, ±0.5 °/s; ±16 g, ±2000 °/s.
+    /// TDK `InvenSense` ICM-42688-P, DS-000347: 65 to 70 µg/√Hz, ±20 mg; 0.0028 °/s/√Hz, ±0.5 °/s;
+    /// ±16 g, ±2000 °/s.
     Icm42688P,
-    /// TDK `InvenSense` MPU-6000, PS-MPU-6000A: 400 µg/√Hz, ±50 to 80 mg; 0.005 °/s/√Hz, ±20 °/s (calibrated at rest: ±1); ±16 g, ±2000 °/s.
+    /// TDK `InvenSense` MPU-6000, PS-MPU-6000A: 400 µg/√Hz, ±50 to 80 mg; 0.005 °/s/√Hz, ±20 °/s
+    /// (calibrated at rest: ±1); ±16 g, ±2000 °/s.
     Mpu6000,
 }
 
@@ -204,7 +209,8 @@ impl ImuModel {
         Self { imu, stream, accelerometer_bias, gyro_bias, gains, turns: 0.0, phases, before: None }
     }
 
-    /// Reads at the end of a `period` of flight: the body's `state`, the velocity of its centre of mass in N, and its thrust as a share of hover's.
+    /// Reads at the end of a `period` of flight: the body's `state`, the velocity of its centre of
+    /// mass in N, and its thrust as a share of hover's.
     pub(super) fn read(
         &mut self,
         state: &State<f64>,

@@ -1,4 +1,5 @@
-//! Motion capture of UAV and load: places with white noise, the UAV's attitude with a white rotation, late.
+//! Motion capture of UAV and load: places with white noise, the UAV's attitude with a white
+//! rotation, late.
 
 use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;

@@ -1,4 +1,5 @@
-//! Barometer, magnetometer and rotor speed: one number or vector each, with a rate, a constant error and white noise.
+//! Barometer, magnetometer and rotor speed: one number or vector each, with a rate, a constant
+//! error and white noise.
 //!
 //! ```text
 //! height  = −p3 + offset + slow + white              slow: first-order Markov, pressure of weather and of the rotors' wash
@@ -13,7 +14,8 @@ use super::super::check;
 use crate::describe::input::Invalid;
 use crate::world::random::Stream;
 
-/// A barometer as a height; left out, the noise of a Bosch BMP388 (BST-BMP388-DS001: 1.2 Pa, 0.1 m) and the slow error of ±8 Pa, 0.66 m.
+/// A barometer as a height; left out, the noise of a Bosch BMP388 (BST-BMP388-DS001: 1.2 Pa, 0.1 m)
+/// and the slow error of ±8 Pa, 0.66 m.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Barometer {
@@ -35,7 +37,8 @@ impl Default for Barometer {
     }
 }
 
-/// A magnetometer; left out, that of a Bosch BMM150-like part after calibration: 1 % noise and 3 % hard iron of the field.
+/// A magnetometer; left out, that of a Bosch BMM150-like part after calibration: 1 % noise and 3 %
+/// hard iron of the field.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Magnetometer {
