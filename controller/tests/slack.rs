@@ -182,8 +182,7 @@ impl<P: Path<f32>> Flight<P> {
     fn step(&mut self, request: Request) -> controller::Output<f32> {
         let (uav, state) = (self.uav(), self.state());
         let state = self.sees_load.then_some(&state);
-        let output =
-            self.supervisor.step_measured(&Measured { state, uav: Some(&uav), specific_force: None }, request);
+        let output = self.supervisor.step(Measured { state, uav: Some(&uav), specific_force: None }, request);
         assert!(output.command.is_finite());
         self.world.advance(&output.command);
         output

@@ -1,8 +1,8 @@
 //! The controller as it flies: a supervised law of either kind, with limits and rotors.
 
 use controller::{
-    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Mode, Path, Real, Reference, Refused,
-    Request, Solution, State, Supervisor, Track, Tracker, Vector3, Vehicle, dynamics,
+    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Measured, Mode, Path, Real,
+    Reference, Refused, Request, Solution, State, Supervisor, Track, Tracker, Vector3, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
@@ -127,15 +127,16 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&mut self.law, supervisor => supervisor.take_over(state, applied))
     }
 
-    /// One control step on whatever state there is. The tracking law's reference is at `phase`,
-    /// rad, now.
+    /// One control step on what is measured now: a state if there is one, or all of [`Measured`].
+    /// The tracking law's reference is at `phase`, rad, now.
     #[inline]
-    pub fn step(&mut self, state: Option<&State<T>>, request: Request, phase: T) -> &Output<T> {
+    pub fn step<'a>(&mut self, measured: impl Into<Measured<'a, T>>, request: Request, phase: T) -> &Output<T> {
+        let measured = measured.into();
         if let Law::Track(supervisor, [radius, p3, rate]) = &mut self.law {
             supervisor.law_mut().set_reference(&Reference::circle(*radius, *p3, *rate, phase));
         }
         self.last = either!(&mut self.law, supervisor => {
-            let controller::Output { command, mode, fault, warning } = supervisor.step(state, request);
+            let controller::Output { command, mode, fault, warning } = supervisor.step(measured, request);
             let actuators = supervisor.sampler().actuation();
             let limited = supervisor.solution().is_some_and(|law| actuators.limit(&law.command, &command));
             Output { command, mode, fault, warning, limited }

@@ -101,7 +101,7 @@ impl<L: Law<f32>> Flight<L> {
     pub fn step_knowing(&mut self, sees: bool, uav: Option<&Uav<f32>>, request: Request) -> Output<f32> {
         let sampled = self.body.state().cast();
         let measured = Measured { state: sees.then_some(&sampled), uav, specific_force: None };
-        let output = self.supervisor.step_measured(&measured, request);
+        let output = self.supervisor.step(measured, request);
         self.fly(output)
     }
 

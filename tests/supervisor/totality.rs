@@ -184,7 +184,7 @@ fn every_bit_pattern_of_the_state_is_answered_and_leaves_no_trace() {
             };
             let specific_force = (bits.next() >> 62 == 0).then(|| Vector3::new(bits.raw(), bits.raw(), bits.raw()));
             let measured = Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force };
-            let output = law.step_measured(&measured, request);
+            let output = law.step(measured, request);
             assert_bounded(&output);
             assert!(law.disturbance().payload.iter().all(|d| d.is_finite()), "{:?}", law.disturbance());
             flown[output.mode as usize] += 1;

@@ -150,3 +150,17 @@ pub struct Measured<'a, T> {
     /// the velocity to show it.
     pub specific_force: Option<Vector3<T>>,
 }
+
+impl<'a, T> From<Option<&'a State<T>>> for Measured<'a, T> {
+    /// The state, where there is one, and nothing else.
+    fn from(state: Option<&'a State<T>>) -> Self {
+        Self { state, uav: None, specific_force: None }
+    }
+}
+
+impl<'a, T> From<&'a State<T>> for Measured<'a, T> {
+    /// The state and nothing else.
+    fn from(state: &'a State<T>) -> Self {
+        Some(state).into()
+    }
+}

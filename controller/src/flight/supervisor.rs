@@ -213,17 +213,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.sampler.set_actuation(actuation)
     }
 
-    /// The command for the coming hold. Call once every period, with the state sampled now, if
-    /// there is one, and what the pilot wants.
+    /// The command for the coming hold. Call once every period, with what is measured now, a state
+    /// if there is one or all of [`Measured`], and what the pilot wants. Where the load is not known
+    /// but the UAV is, hold flies that after [`Policy::coast`].
     #[inline]
-    pub fn step(&mut self, sampled: Option<&State<T>>, request: Request) -> Output<T> {
-        self.step_measured(&Measured { state: sampled, uav: None, specific_force: None }, request)
-    }
-
-    /// The same with all that was measured. Where the load is not known but the UAV is, hold flies
-    /// that after [`Policy::coast`].
-    #[inline]
-    pub fn step_measured(&mut self, measured: &Measured<'_, T>, request: Request) -> Output<T> {
+    pub fn step<'a>(&mut self, measured: impl Into<Measured<'a, T>>, request: Request) -> Output<T> {
+        let measured = measured.into();
         if request != self.request {
             self.request = request;
             self.fault = None;
