@@ -128,8 +128,9 @@ impl World {
 struct Flight<P> {
     world: World,
     supervisor: Supervisor<f32, Follow<f32, P>>,
-    /// Whether the load is seen.
+    /// Whether the load is seen, and whether the UAV has its own navigation.
     sees_load: bool,
+    has_navigation: bool,
 }
 
 fn flight(setting: Setting, uav: V, load: V, ground: f64) -> Flight<impl Path<f32>> {
@@ -150,7 +151,7 @@ fn flight(setting: Setting, uav: V, load: V, ground: f64) -> Flight<impl Path<f3
         .unwrap();
     let supervisor =
         Supervisor::new(follower, EnvelopeParams::wide(), ApproachLimits::gentle(), Policy::default()).unwrap();
-    Flight { world: World::new(setting, uav, load, ground), supervisor, sees_load: true }
+    Flight { world: World::new(setting, uav, load, ground), supervisor, sees_load: true, has_navigation: true }
 }
 
 /// Hanging at `height` m above the ground at p3 = 0.
@@ -182,7 +183,8 @@ impl<P: Path<f32>> Flight<P> {
     fn step(&mut self, request: Request) -> controller::Output<f32> {
         let (uav, state) = (self.uav(), self.state());
         let state = self.sees_load.then_some(&state);
-        let output = self.supervisor.step(Measured { state, uav: Some(&uav), specific_force: None }, request);
+        let uav = self.has_navigation.then_some(&uav);
+        let output = self.supervisor.step(Measured { state, uav, specific_force: None }, request);
         assert!(output.command.is_finite());
         self.world.advance(&output.command);
         output
@@ -227,6 +229,62 @@ fn landing_sets_down_the_load_and_then_the_uav_beside_it() {
         assert!(landed.is_some(), "{name}: not landed");
         assert!(*load_touch <= 0.6 && *uav_touch <= 0.6, "{name}: {load_touch} and {uav_touch} m/s");
         assert!(*uav_touch > 0.0, "{name}: rotors off in the air");
+    }
+}
+
+/// The rod's direction is all that tells of the UAV: it is flown around its load, which stands.
+#[test]
+fn landing_by_the_rod_alone_brings_the_uav_down_as_slowly() {
+    let scaled = |kg: f64, setting: Setting| Setting {
+        payload_mass: kg,
+        told_mass: kg,
+        uav_mass: 5.0 * kg,
+        inertia: [0.03, 0.03, 0.05].map(|j| j * kg / 0.5),
+        ..setting
+    };
+    let paper = |height| (height, PAPER);
+    for (name, (height, setting)) in [
+        ("0.5 m", (3.0, Setting { length: 0.5, ..PAPER })),
+        ("1 m", (3.0, Setting { length: 1.0, ..PAPER })),
+        ("2 m", paper(3.0)),
+        ("2 m, ground at once", paper(0.02)),
+        ("2 m, ground soon", paper(0.3)),
+        ("5 m", (3.0, Setting { length: 5.0, ..PAPER })),
+        ("15 m", (3.0, Setting { length: 15.0, ..PAPER })),
+        ("0.1 kg", (3.0, scaled(0.1, PAPER))),
+        ("10 kg on 10 m", (3.0, scaled(10.0, Setting { length: 10.0, ..PAPER }))),
+        ("0.1 kg under 2.5", (3.0, Setting { payload_mass: 0.1, told_mass: 0.1, ..PAPER })),
+        ("1.5 kg under 2.5", (3.0, Setting { payload_mass: 1.5, told_mass: 1.5, ..PAPER })),
+        ("1 kg told 0.5", (3.0, Setting { payload_mass: 1.0, ..PAPER })),
+        ("0.35 kg told 0.5", (3.0, Setting { payload_mass: 0.35, ..PAPER })),
+        ("thrust 85 %", (3.0, Setting { thrust: 0.85, ..PAPER })),
+        ("thrust 115 %", (3.0, Setting { thrust: 1.15, ..PAPER })),
+        ("wind", (3.0, Setting { wind: 1.0, ..PAPER })),
+    ] {
+        let mut flight = hanging(setting, height);
+        flight.has_navigation = false;
+        for _ in 0..3000 {
+            flight.step(Request::Hold);
+        }
+        let mut landed = None;
+        let mut nearest = f64::INFINITY;
+        for step in 0..60_000 {
+            if flight.step(Request::Land).mode == Mode::Off {
+                landed = Some(f64::from(step) * PERIOD);
+                break;
+            }
+            nearest = nearest.min(norm(&(flight.world.load - flight.world.uav.position)));
+        }
+        let World { uav_touch, load_touch, load, uav, .. } = &flight.world;
+        let apart = norm(&(load - uav.position));
+        println!(
+            "{name}: load {load_touch:.2}, UAV {uav_touch:.2} m/s, {nearest:.2} m apart at least, {apart:.2} m after {landed:?} s"
+        );
+        assert!(landed.is_some(), "{name}: not landed");
+        assert!(*load_touch <= 0.6 && *uav_touch <= 0.6, "{name}: {load_touch} and {uav_touch} m/s");
+        assert!(*uav_touch > 0.0, "{name}: rotors off in the air");
+        // The cable is taut but for the moment in which the load is set down.
+        assert!(nearest > 0.7 * setting.length, "{name}: {nearest} m from its load");
     }
 }
 

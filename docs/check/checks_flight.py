@@ -109,6 +109,28 @@ def hold():
         assert all(root.real < 0 for root in roots(coefficients))
 
 
+@covers("14.6", "14.7")
+def landing_by_the_rod():
+    car = TABLE_I
+    for _ in range(20):
+        payload, (turn, phi, speed, share) = Vec(*numbers(3, 3.0)), (abs(x) for x in numbers(4, 0.6))
+        level = Vec(math.cos(turn), math.sin(turn), 0.0)
+
+        def target(t):
+            angle = phi + speed / car.length * t
+            return payload + (level * math.sin(angle) - E3 * math.cos(angle)) * car.length
+
+        close((target(0.0) - payload).norm(), car.length, 1e-12, "(14.6): the cable is taut")
+        moving = (level * math.cos(phi) + E3 * math.sin(phi)) * speed
+        close(derivative(lambda t: list(target(t))), moving, 1e-8, "(14.6)")
+        # (14.7): rotors that give 1/s of what they are told leave the tension that was meant.
+        q = (payload - target(0.0)) / car.length
+        s = 1.0 / RANDOM.uniform(0.8, 1.2)
+        f = E3 * ((s - 1) * car.g) + q * (s * share * car.m_l / car.m_q * car.g)
+        given = (E3 * car.g + f) * (car.m_q / s)
+        close(E3 * (car.m_q * car.g) - given, q * (-share * car.m_l * car.g), 1e-12, "(14.7)")
+
+
 @covers("15.2", "15.3", "15.4", "15.5", "15.6")
 def curves():
     # (15.2) by differences.

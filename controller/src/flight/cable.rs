@@ -91,17 +91,30 @@ impl<T: Real> Cable<T> {
         let near = params.rod_length * T::lit(SHORTENED);
         let is_near = line.is_some_and(|line| is_within(&line, near * near));
         let down = self.pull.down(vehicle);
-        self.learning = (self.learning + self.period).min(T::lit(USUAL));
-        let is_known = self.learning >= T::lit(USUAL);
+        let is_known = self.learning + self.period >= T::lit(USUAL);
         let is_unweighted = self.usual - down > params.payload_mass * params.gravity * T::lit(UNWEIGHTED);
         if watching != Watching::Not && (is_near || is_known && is_unweighted) {
             self.slackening += self.period;
+            self.learning = (self.learning + self.period).min(T::lit(USUAL));
             return;
         }
         self.slackening = T::zero();
-        if watching == Watching::Learning || watching == Watching::Against && !is_known {
-            self.usual += (down - self.usual) * (self.period / self.learning);
+        self.average(vehicle, watching);
+    }
+
+    /// Averages the usual pull.
+    #[inline(never)]
+    pub(crate) fn average(&mut self, vehicle: &Vehicle<T>, watching: Watching) {
+        self.learning = (self.learning + self.period).min(T::lit(USUAL));
+        if watching == Watching::Learning || watching == Watching::Against && self.learning < T::lit(USUAL) {
+            self.usual += (self.pull.down(vehicle) - self.usual) * (self.period / self.learning);
         }
+    }
+
+    /// The pull along n3, N, as usual and now: what hangs from the UAV, and what the rotors fall
+    /// short of.
+    pub(crate) fn down(&self, vehicle: &Vehicle<T>) -> [T; 2] {
+        [self.usual, self.pull.down(vehicle)]
     }
 
     pub(crate) fn is_slack(&self) -> bool {

@@ -3,6 +3,7 @@
 pub(crate) mod approach;
 pub(crate) mod cable;
 pub(crate) mod envelope;
+pub(crate) mod landing;
 pub(crate) mod mode;
 pub(crate) mod payload;
 pub(crate) mod speed_factor;

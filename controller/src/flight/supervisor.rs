@@ -7,6 +7,7 @@ use crate::error::Refused;
 use crate::flight::approach::{ApproachLimits, Pace};
 use crate::flight::cable::{Cable, Watching};
 use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
+use crate::flight::landing::{Aim, Landing};
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 use crate::flight::payload::Payload;
 use crate::law::hold::{Hold, swing};
@@ -20,11 +21,6 @@ use crate::sampled::sampler::Sampler;
 /// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as
 /// the rotors can, goes first.
 const JOINING_THRUST: f64 = 0.75;
-/// With the load on the ground the UAV waits, s, then goes this far aside, m, at this speed, m/s,
-/// and lands beside it.
-const SETTLED: f64 = 0.5;
-const ASIDE: f64 = 0.6;
-const ASIDE_SPEED: f64 = 0.4;
 /// A take-off rises at this speed, m/s, until the UAV is this much higher than the cable is long,
 /// m.
 const RISING: f64 = 0.4;
@@ -73,8 +69,9 @@ const CALM_TILT: f64 = 0.95;
 ///
 /// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold.
 /// Hold, landing and take-off fly the UAV itself and take the cable for a pull; without that
-/// navigation they take it for taut, and a load that stands on the ground is not noticed. A landing
-/// sets the load down, goes aside, and sets the UAV down beside it.
+/// navigation they take it for taut. A landing sets the load down, goes aside, and sets the UAV down
+/// beside it; without that navigation it keeps the cable taut and flies the UAV around the load, an
+/// arc of the cable's length, to the ground.
 ///
 /// From hold the path is joined at once if follow has just been asked for and the vehicle is inside
 /// its envelope, and otherwise after
@@ -97,10 +94,7 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     hold: Hold<T>,
     cable: Cable<T>,
     payload: Payload<T>,
-    /// Time since the load has been set down in a landing, s, and the velocity, m/s, with which the
-    /// UAV then goes aside.
-    set_down: T,
-    aside: Vector3<T>,
+    landing: Landing<T>,
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
     /// Time without a good state, and of calm in hold, s.
@@ -136,8 +130,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             hold: Hold::from(&Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
             cable: Cable::new(&vehicle, period),
             payload: Payload::new(&vehicle, policy.payload_lost),
-            set_down: T::zero(),
-            aside: Vector3::zeros(),
+            landing: Landing::begin(),
             from: T::zero(),
             blind: T::zero(),
             calm: T::zero(),
@@ -290,7 +283,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         match self.mode {
             Mode::Off | Mode::Fault => self.ground(None, T::zero()),
             Mode::Idle => self.ground(None, self.sampler.actuation().least_thrust()),
-            _ => self.hold(None, uav),
+            _ => self.hold(None, uav, None),
         }
     }
 
@@ -313,7 +306,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// By the law, or by hold.
     #[inline]
     fn fly(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
-        let is_slack = self.cable.is_slack() || self.mode == Mode::TakeOff;
+        let is_slack = self.cable.is_slack() || self.landing.is_set_down() || self.mode == Mode::TakeOff;
         let known = is_slack.then(|| self.sampler.freeze(state));
         let ahead = self.sampler.sample(state);
         if let Some(known) = known {
@@ -345,7 +338,20 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn hold_at(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
         let now = self.now(state, uav);
-        self.hold(Some(state), &now)
+        let aim = if uav.is_none() { self.around(state) } else { None };
+        self.hold(Some(state), &now, aim.as_ref())
+    }
+
+    /// Where the rod is all that tells of the UAV: what to fly once a landing has set down the load.
+    #[inline(never)]
+    fn around(&mut self, state: &State<T>) -> Option<Aim<T>> {
+        let vehicle = self.sampler.vehicle();
+        self.cable.average(vehicle, self.watching());
+        if self.mode != Mode::Land {
+            return None;
+        }
+        let known = (self.sampler.applied().thrust, self.cable.down(vehicle), &self.cable.pull(vehicle));
+        self.landing.around(vehicle, state, known, self.policy.descent, self.sampler.period())
     }
 
     /// `command` in the mode, and with the fault, that there is now.
@@ -454,7 +460,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.mode = Mode::Hold;
         self.calm = T::zero();
         self.payload.leave();
-        self.set_down = T::zero();
+        self.landing = Landing::begin();
         self.fault = fault.or(self.fault);
     }
 
@@ -490,15 +496,23 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.sampler.disturbance().payload.dot(&ahead.state.rod)
     }
 
-    /// Hold's command for when it acts, from the UAV and what is known of the rod now.
+    /// Hold's command for when it acts, from the UAV and what is known of the rod now; it goes for
+    /// `aim` where there is one.
     #[inline(never)]
-    fn hold(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Output<T> {
+    fn hold(&mut self, state: Option<&State<T>>, now: &Uav<T>, aim: Option<&Aim<T>>) -> Output<T> {
         let period = self.sampler.period();
-        let velocity = self.wanted_velocity(state, now);
+        let (aimed, pull, swing, velocity) = if let Some(&Aim { uav, target, velocity, pull }) = aim {
+            self.hold.aim(target, velocity);
+            (uav, pull, Vector3::zeros(), velocity)
+        } else {
+            let velocity = self.wanted_velocity(state, now);
+            let vehicle = self.sampler.vehicle();
+            let taut = state.filter(|_| !self.cable.is_slack());
+            let swing = taut.map_or_else(Vector3::zeros, |state| swing(vehicle, state));
+            (*now, self.cable.pull(vehicle), swing, velocity)
+        };
         let vehicle = self.sampler.vehicle();
-        let (zero, pull) = (Vector3::zeros(), self.cable.pull(vehicle));
-        let swing = state.filter(|_| !self.cable.is_slack()).map_or(zero, |state| swing(vehicle, state));
-        let uav = self.sampler.look_ahead(now, &pull);
+        let uav = self.sampler.look_ahead(&aimed, &pull);
         let wanted = self.hold.step(vehicle, &uav, &pull, &swing, &velocity, period);
         if self.mode == Mode::Land && self.hold.left_above(now) > T::lit(GROUNDED) {
             self.mode = Mode::Off;
@@ -519,36 +533,16 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.output(command, warning)
     }
 
-    /// The velocity that hold goes for: none, or that of a take-off, or that of a landing, the load
-    /// down first and then the UAV beside it.
+    /// The velocity that hold goes for: none, or that of a take-off or landing.
     #[inline(never)]
     fn wanted_velocity(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Vector3<T> {
         match self.mode {
-            Mode::Land => {}
-            Mode::TakeOff => return Vector3::new(T::zero(), T::zero(), T::lit(-RISING)),
-            _ => return Vector3::zeros(),
-        }
-        let sinking = Vector3::new(T::zero(), T::zero(), self.policy.descent);
-        if !self.cable.is_slack() {
-            self.set_down = T::zero();
-            return sinking;
-        }
-        if self.set_down == T::zero() {
-            // Away from the load, or forward.
-            let away = state.map_or_else(Vector3::zeros, |state| now.position - state.position);
-            let forward: Vector3<T> = now.attitude.column(0).into();
-            let level = |v: Vector3<T>| Vector3::new(v.x, v.y, T::zero());
-            let away = level(away);
-            let aside = if is_within(&away, T::lit(0.05 * 0.05)) { level(forward) } else { away };
-            self.aside = aside * (T::lit(ASIDE_SPEED) / aside.dot(&aside).sqrt().max(T::lit(1e-3)));
-        }
-        self.set_down += self.sampler.period();
-        if self.set_down < T::lit(SETTLED) {
-            Vector3::zeros()
-        } else if self.set_down < T::lit(SETTLED + ASIDE / ASIDE_SPEED) {
-            self.aside
-        } else {
-            sinking
+            Mode::Land => {
+                let (is_slack, period) = (self.cable.is_slack(), self.sampler.period());
+                self.landing.velocity(state, now, is_slack, self.policy.descent, period)
+            }
+            Mode::TakeOff => Vector3::new(T::zero(), T::zero(), T::lit(-RISING)),
+            _ => Vector3::zeros(),
         }
     }
 

@@ -65,6 +65,11 @@ impl<T: Real> Hold<T> {
         }
     }
 
+    /// The target, and how fast it moves, from now on.
+    pub(crate) fn aim(&mut self, target: Vector3<T>, velocity: Vector3<T>) {
+        (self.target, self.velocity, self.remainder) = (target, velocity, Vector3::zeros());
+    }
+
     /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
     /// that the ground carries it.
     pub(crate) fn left_above(&self, uav: &Uav<T>) -> T {
