@@ -1,6 +1,6 @@
 //! What tells navigation where it is: fixes, height, heading, motion capture. Each is compared with
 //! the nominal state when it comes, at the age it has, and waits as innovations for its turn, a
-//! scalar a period.
+//! scalar a period. An innovation ages while it waits.
 //!
 //! With the point measured at r in body axes from the IMU and an age τ, (10) gives
 //!
@@ -28,6 +28,28 @@ pub(crate) enum Kind {
     Attitude,
 }
 
+/// Counts periods. What waits does so for less than the two minutes in which it comes round.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Clock<T> {
+    periods: u16,
+    period: T,
+}
+
+impl<T: Real> Clock<T> {
+    pub(crate) fn every(period: T) -> Self {
+        Self { periods: 0, period }
+    }
+
+    pub(crate) fn pass(&mut self) {
+        self.periods = self.periods.wrapping_add(1);
+    }
+
+    /// Since a moment, s.
+    fn passed(&self, since: u16) -> T {
+        self.period * T::lit(f64::from(self.periods.wrapping_sub(since)))
+    }
+}
+
 /// Innovations of one kind that wait: sums, since a source may be faster than the filter's cycle.
 /// The mean of n has a variance of R/n.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +57,9 @@ pub(crate) struct Waiting<T> {
     sum: Vector3<T>,
     /// Horizontal and down.
     variance: [T; 2],
+    /// Sum of the ages, s, that the measurements had at `since`, by the filter's clock.
     age: T,
+    since: u16,
     /// The lever in body axes, m, or the velocity that it brings, m/s; the last one's stands for
     /// all.
     lever: Vector3<T>,
@@ -48,6 +72,7 @@ impl<T: Real> Waiting<T> {
             sum: Vector3::zeros(),
             variance: [T::zero(); 2],
             age: T::zero(),
+            since: 0,
             lever: Vector3::zeros(),
             count: T::zero(),
         }
@@ -57,23 +82,33 @@ impl<T: Real> Waiting<T> {
         self.count < T::lit(0.5)
     }
 
-    pub(crate) fn add(&mut self, innovation: &Vector3<T>, deviations: [T; 2], age: T, lever: &Vector3<T>) {
+    pub(crate) fn add(
+        &mut self,
+        innovation: &Vector3<T>,
+        deviations: [T; 2],
+        age: T,
+        lever: &Vector3<T>,
+        clock: &Clock<T>,
+    ) {
+        if self.is_empty() {
+            self.since = clock.periods;
+        }
         self.sum += innovation;
         for (variance, deviation) in self.variance.iter_mut().zip(deviations) {
             *variance += deviation * deviation;
         }
-        self.age += age;
+        self.age += age - clock.passed(self.since);
         self.lever = *lever;
         self.count += T::one();
     }
 
     /// The state has moved by `error`: so have the innovations against it.
-    pub(crate) fn shift(&mut self, kind: Kind, error: &[T; ERRORS], state: &Strapdown<T>) {
+    pub(crate) fn shift(&mut self, kind: Kind, error: &[T; ERRORS], state: &Strapdown<T>, clock: &Clock<T>) {
         if self.is_empty() {
             return;
         }
         for axis in 0..kind.scalars() {
-            let scalar = self.scalar(kind, axis, state);
+            let scalar = self.scalar(kind, axis, state, clock);
             let moved = crate::covariance::dot(&scalar.h, error) * self.count;
             if let Some(sum) = self.sum.get_mut(axis) {
                 *sum -= moved;
@@ -82,13 +117,19 @@ impl<T: Real> Waiting<T> {
     }
 
     /// Row `axis` of the mean.
-    pub(crate) fn scalar(&self, kind: Kind, axis: usize, state: &Strapdown<T>) -> Scalar<T, ERRORS> {
+    pub(crate) fn scalar(
+        &self,
+        kind: Kind,
+        axis: usize,
+        state: &Strapdown<T>,
+        clock: &Clock<T>,
+    ) -> Scalar<T, ERRORS> {
         let per_count = T::one() / self.count.max(T::one());
         let [across, down] = self.variance;
         let variance = if axis == 2 { down } else { across } * per_count * per_count;
         let innovation = self.sum.get(axis).copied().unwrap_or_else(T::zero) * per_count;
         let mut scalar = Scalar::of(innovation, variance);
-        let age = self.age * per_count;
+        let age = self.age * per_count + clock.passed(self.since);
         let mut set = |at: usize, value: T| {
             if let Some(entry) = scalar.h.get_mut(at) {
                 *entry = value;
@@ -137,7 +178,7 @@ impl<T: Real> Waiting<T> {
 }
 
 impl Kind {
-    /// All, in the order in which they are taken.
+    /// All, in the order in which they take turns.
     pub(crate) const ALL: [Self; 5] = [Self::Position, Self::Velocity, Self::Attitude, Self::Heading, Self::Height];
 
     pub(crate) const fn scalars(self) -> usize {

@@ -4,7 +4,8 @@
 //! Fifteen error states around a [strapdown] integration. Fixes are late, so a [ring] remembers
 //! where the vehicle was. The cycle of 30 periods is the payload filter's: the
 //! [covariance](predict) moves in two of them, where the payload filter has nothing to do, and
-//! [scalars](aiding) have seventeen of the others, one a period: 280 a second at 500 Hz.
+//! [scalars](aiding) and corrections have fourteen of the others, one a period. Kinds of measurements
+//! take turns, so that none that comes often keeps another from its own.
 
 mod aiding;
 mod params;
@@ -20,7 +21,7 @@ use model::{Matrix3, OutOfRange, Real, Vector3, is_within};
 use crate::covariance::{Covariance, dot};
 use crate::lever::axes;
 use crate::motion::Motion;
-use aiding::{Kind, Waiting};
+use aiding::{Clock, Kind, Waiting};
 use predict::Spread;
 use ring::Ring;
 use strapdown::{ERRORS, Strapdown, index};
@@ -104,6 +105,9 @@ pub struct Navigation<T> {
     /// Sum of f in N over the half cycle.
     force: Vector3<T>,
     waiting: [Waiting<T>; 5],
+    clock: Clock<T>,
+    /// Whose turn it is, as a place in [`Kind::ALL`].
+    turn: usize,
     /// The batch at work: which kind, which of its scalars comes next, and what has been corrected
     /// by it.
     batch: Option<(Kind, Waiting<T>)>,
@@ -154,6 +158,8 @@ impl<T: Real> Navigation<T> {
             phase: 3,
             force: Vector3::zeros(),
             waiting: [Waiting::none(); 5],
+            clock: Clock::every(params.period),
+            turn: 0,
             batch: None,
             row: 0,
             pending: [T::zero(); ERRORS],
@@ -264,7 +270,7 @@ impl<T: Real> Navigation<T> {
     fn wait_at(&mut self, kind: Kind, innovation: &Vector3<T>, deviations: [T; 2], age: T, lever: &Vector3<T>) {
         for (other, waiting) in Kind::ALL.into_iter().zip(&mut self.waiting) {
             if other == kind {
-                waiting.add(innovation, deviations, age, lever);
+                waiting.add(innovation, deviations, age, lever, &self.clock);
             }
         }
     }
@@ -383,6 +389,7 @@ impl<T: Real> Navigation<T> {
         self.state.advance(&reading, period, self.params.gravity);
         self.force += self.state.acceleration;
         self.ring.pass(period);
+        self.clock.pass();
         self.fix_age = (self.fix_age + period).min(T::lit(1e4));
         match self.phase {
             11 | 26 => self.spread(),
@@ -447,8 +454,14 @@ impl<T: Real> Navigation<T> {
     /// The next scalar of what waits.
     fn work(&mut self) {
         if self.batch.is_none() {
-            let next = Kind::ALL.into_iter().zip(&mut self.waiting).find(|(_, waiting)| !waiting.is_empty());
-            self.batch = next.map(|(kind, waiting)| (kind, core::mem::replace(waiting, Waiting::none())));
+            let is_waiting = |place: &usize| self.waiting.get(*place).is_some_and(|waiting| !waiting.is_empty());
+            let kinds = Kind::ALL.len();
+            let next = (self.turn..kinds).chain(0..self.turn).find(is_waiting);
+            self.batch = next.and_then(|place| {
+                self.turn = (place + 1) % kinds;
+                let waiting = self.waiting.get_mut(place)?;
+                Some((*Kind::ALL.get(place)?, core::mem::replace(waiting, Waiting::none())))
+            });
             self.row = 0;
         }
         let Some((kind, waiting)) = self.batch else { return };
@@ -456,7 +469,7 @@ impl<T: Real> Navigation<T> {
             self.settle();
             return;
         }
-        let scalar = waiting.scalar(kind, self.row, &self.state);
+        let scalar = waiting.scalar(kind, self.row, &self.state, &self.clock);
         let innovation = scalar.innovation - dot(&scalar.h, &self.pending);
         if innovation.is_finite() {
             let absorbed = self.covariance.absorb(&scalar, innovation, None);
@@ -470,7 +483,7 @@ impl<T: Real> Navigation<T> {
     /// Ends a batch.
     fn settle(&mut self) {
         for (kind, waiting) in Kind::ALL.into_iter().zip(&mut self.waiting) {
-            waiting.shift(kind, &self.pending, &self.state);
+            waiting.shift(kind, &self.pending, &self.state, &self.clock);
         }
         let moved = self.state.inject(&self.pending);
         self.ring.shift(&moved);

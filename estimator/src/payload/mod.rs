@@ -29,7 +29,7 @@ use crate::covariance::{Covariance, Scalar, dot};
 use crate::lever::{axes, swung};
 use crate::motion::Motion;
 use health::CableWatch;
-use load::Innovations;
+use load::{Innovations, Swing};
 use pendulum::{Pendulum, Pivot, Pull};
 use predict::Spread;
 use state::{ERRORS, index};
@@ -81,6 +81,9 @@ pub struct Payload<T> {
     phase: u8,
     window: Window<T>,
     mean: Mean<T>,
+    /// The pivot's specific force in N: summed up over the cycle, and its mean over the last one.
+    force: Vector3<T>,
+    mean_force: Vector3<T>,
     linearized: Linearized<T>,
     /// Whether the mass has been known to 15 % since the start.
     is_mass_found: bool,
@@ -89,7 +92,7 @@ pub struct Payload<T> {
     pending: [T; ERRORS],
     watch: CableWatch<T>,
     surprise: [T; 3],
-    load_surprise: T,
+    load_surprise: [T; 2],
     /// Innovations of the load's rod and rate: being summed up, and being taken in.
     fresh: [Innovations<T>; 2],
     taken: [Innovations<T>; 2],
@@ -131,6 +134,9 @@ impl<T: Real> Payload<T> {
             phase: 3,
             window: Window::empty(),
             mean: Mean { residual: Vector3::zeros(), thrust: T::zero(), is_full: false },
+            // The first cycle begins at its fourth period.
+            force: Vector3::new(T::zero(), T::zero(), params.gravity * T::lit(-3.0)),
+            mean_force: Vector3::new(T::zero(), T::zero(), -params.gravity),
             linearized: Linearized::none(),
             is_mass_found: false,
             health: Health {
@@ -142,7 +148,7 @@ impl<T: Real> Payload<T> {
             pending: [T::zero(); ERRORS],
             watch: CableWatch::new(Cable::Taut),
             surprise: [T::one(); 3],
-            load_surprise: T::one(),
+            load_surprise: [T::one(); 2],
             fresh: [Innovations::none(); 2],
             taken: [Innovations::none(); 2],
             last: Motion::at_rest(Vector3::zeros(), params.gravity),
@@ -186,8 +192,8 @@ impl<T: Real> Payload<T> {
         &self.covariance.0
     }
 
-    /// A measurement of the load of `age` s, compared with the rod at once and taken in within a
-    /// cycle. One that is not finite, or whose deviation is not positive, is ignored; so is any
+    /// A measurement of the load, `age` s old at the last [`step`](Self::step), compared with the rod
+    /// at once and taken in within a cycle. One that is not finite, or whose deviation is not positive, is ignored; so is any
     /// while the cable is slack. Returns whether it counts.
     pub fn observe(&mut self, measurement: &LoadMeasurement<T>, age: T) -> bool {
         let (value, deviation) = match measurement {
@@ -205,6 +211,12 @@ impl<T: Real> Payload<T> {
             return false;
         }
         let per_length = T::one() / self.params.cable_length;
+        // Steps since the one that took the last ones, at phase 6.
+        let ages = [age, self.waited((self.phase + CYCLE - 7) % CYCLE)];
+        let PayloadState { rod, rod_rate, .. } = self.state;
+        let now = Swing { rod, rate: rod_rate, acceleration: self.pull.acceleration };
+        let lever = self.last.attitude * self.last.body_rate.cross(&self.params.hook);
+        let hook_velocity = self.last.velocity + lever;
         let [rods, rates] = &mut self.fresh;
         match measurement {
             LoadMeasurement::Direction(rod, _) => {
@@ -212,18 +224,17 @@ impl<T: Real> Payload<T> {
                 if !(length > T::zero() && rod.z > T::zero()) {
                     return false;
                 }
-                rods.add_rod([rod.x / length, rod.y / length], deviation, age, &self.state, &self.pull);
+                rods.add_rod([rod.x / length, rod.y / length], deviation, ages, &now);
             }
             LoadMeasurement::Position(place, _) => {
                 // Where the hook was then.
-                let hook = self.last.position + self.last.attitude * self.params.hook - self.last.velocity * age;
+                let hook = self.last.position + self.last.attitude * self.params.hook - hook_velocity * age;
                 let rod = (place - hook) * per_length;
-                rods.add_rod([rod.x, rod.y], deviation * per_length, age, &self.state, &self.pull);
+                rods.add_rod([rod.x, rod.y], deviation * per_length, ages, &now);
             }
             LoadMeasurement::Velocity(velocity, _) => {
-                let lever = self.last.attitude * self.last.body_rate.cross(&self.params.hook);
-                let rate = (velocity - self.last.velocity - lever) * per_length;
-                rates.add_rate([rate.x, rate.y], deviation * per_length, age, &self.state, &self.pull);
+                let rate = (velocity - hook_velocity) * per_length;
+                rates.add_rate([rate.x, rate.y], deviation * per_length, ages, &now);
             }
         }
         true
@@ -255,6 +266,7 @@ impl<T: Real> Payload<T> {
             velocity: velocity + attitude * body_rate.cross(&params.hook),
             specific_force: attitude * halfway,
         };
+        self.force += pivot.specific_force;
         let pendulum = Pendulum::new(params, &self.state);
         self.pull = if self.watch.cable == Cable::Taut {
             pendulum.advance(params, &pivot, &mut self.state)
@@ -267,23 +279,36 @@ impl<T: Real> Payload<T> {
         if let (Some(_), Some(thrust)) = (usable, thrust) {
             self.window.add(params, &self.state, (&pendulum, &self.pull), &attitude, &velocity, &center, thrust);
         }
-        self.work(&pendulum, &pivot, &attitude, &velocity);
+        self.work(&pendulum, &pivot.velocity, &attitude, &velocity);
         self.phase = if self.phase + 1 >= CYCLE { 0 } else { self.phase + 1 };
         self.estimate(&position, &reach, &pivot.velocity)
     }
 
     /// What the cycle has for this period.
-    fn work(&mut self, pendulum: &Pendulum<T>, pivot: &Pivot<T>, attitude: &Matrix3<T>, velocity: &Vector3<T>) {
+    ///
+    /// What is linearized is so about the last cycle's mean force: that of a period shakes with the
+    /// frame, and a gain that shakes with the innovation it meets would drag the state along.
+    fn work(
+        &mut self,
+        pendulum: &Pendulum<T>,
+        hook_velocity: &Vector3<T>,
+        attitude: &Matrix3<T>,
+        velocity: &Vector3<T>,
+    ) {
+        let pivot = &Pivot { velocity: *hook_velocity, specific_force: self.mean_force };
         match self.phase {
             0 => {
                 self.close_window(attitude);
+                self.mean_force = self.force * T::lit(1.0 / f64::from(CYCLE));
+                self.force = Vector3::zeros();
+                let pivot = &Pivot { specific_force: self.mean_force, ..*pivot };
                 self.linearized = Linearized::about(&self.params, &self.state, pendulum, pivot, velocity);
             }
             1 => self.take_thrust(attitude, Axis::First),
             2 => self.take_thrust(attitude, Axis::Second),
             3 => self.take_thrust(attitude, Axis::Thrust),
             4 => {
-                self.settle();
+                self.settle(CYCLE - 2);
                 self.is_mass_found |= self.covariance.0[index::MASS][index::MASS] < T::lit(0.15 * 0.15);
                 if self.is_astray() {
                     self.restart(false);
@@ -299,7 +324,7 @@ impl<T: Real> Payload<T> {
             7 => self.take_load(0, 1),
             8 => self.take_load(1, 0),
             9 => self.take_load(1, 1),
-            10 => self.settle(),
+            10 => self.settle(4),
             _ => {}
         }
     }
@@ -321,8 +346,8 @@ impl<T: Real> Payload<T> {
     /// What is measured has been far from what was expected for a second: the filter is sure of a
     /// rod that is not there.
     fn is_astray(&self) -> bool {
-        let [x, y, z] = self.surprise;
-        self.watch.cable == Cable::Taut && x.max(y).max(z).max(self.load_surprise) > T::lit(ASTRAY)
+        let ([x, y, z], [rod_x, rod_y]) = (self.surprise, self.load_surprise);
+        self.watch.cable == Cable::Taut && x.max(y).max(z).max(rod_x).max(rod_y) > T::lit(ASTRAY)
     }
 
     /// The cable has changed, or the filter has lost the rod: taut, the rod is where it pulls, and
@@ -342,7 +367,7 @@ impl<T: Real> Payload<T> {
         }
         self.is_mass_found &= !is_new;
         self.surprise = [T::one(); 3];
-        self.load_surprise = T::one();
+        self.load_surprise = [T::one(); 2];
         self.fresh = [Innovations::none(); 2];
         self.taken = [Innovations::none(); 2];
         self.mean.is_full = false;
@@ -372,16 +397,24 @@ impl<T: Real> Payload<T> {
     /// One scalar of the load's measurements.
     fn take_load(&mut self, kind: usize, axis: usize) {
         if let Some(taken) = self.taken.get(kind).filter(|taken| !taken.is_empty()) {
-            let scalar = taken.scalar(axis, kind == 1);
+            let scalar = taken.scalar(axis, kind == 1, self.waited(CYCLE));
             let surprise = take(&mut self.covariance, &mut self.pending, &scalar, true);
-            self.load_surprise += (surprise.min(T::lit(WILD)) - self.load_surprise) * T::lit(0.03);
+            if let Some(mean) = self.load_surprise.get_mut(axis) {
+                *mean += (surprise.min(T::lit(WILD)) - *mean) * T::lit(0.06);
+            }
         }
     }
 
-    /// Ends a batch.
-    fn settle(&mut self) {
+    /// So many periods, s.
+    fn waited(&self, periods: u8) -> T {
+        self.params.period * T::lit(f64::from(periods))
+    }
+
+    /// Ends a batch, so many `periods` after the measurements of the load were last taken.
+    fn settle(&mut self, periods: u8) {
         self.state.inject(&self.pending);
-        self.fresh.iter_mut().enumerate().for_each(|(kind, fresh)| fresh.shift(&self.pending, kind == 1));
+        let waited = self.waited(periods);
+        self.fresh.iter_mut().enumerate().for_each(|(kind, fresh)| fresh.shift(&self.pending, kind == 1, waited));
         self.pending = [T::zero(); ERRORS];
     }
 
@@ -393,6 +426,7 @@ impl<T: Real> Payload<T> {
         let sensitivity = pendulum.sensitivity(&self.params, pivot, &self.state);
         let rows = sensitivity.acceleration(&self.params, &self.state.rod);
         self.spread.advance(&mut self.covariance, &rows, &self.state.rod, &self.initial);
+        self.spread.relax(&mut self.state);
         // Each period unread moves the rod by what the accelerometer might have said.
         let unread = T::lit(UNREAD) * self.params.period / self.params.cable_length * self.unread;
         for i in [index::RATE, index::RATE + 1] {

@@ -11,7 +11,7 @@
 use model::{Real, Vector3};
 
 use super::params::{PayloadNoise, PayloadParams};
-use super::state::{ERRORS, index};
+use super::state::{ERRORS, PayloadState, index};
 use crate::covariance::Covariance;
 
 /// Noise and decay over one step of the covariance, made once.
@@ -48,6 +48,13 @@ impl<T: Real> Spread<T> {
             rod: walk(rod),
             pivot: walk(pivot),
         }
+    }
+
+    /// What a step leaves of wind and residual themselves: the same that it leaves of their errors.
+    pub(crate) fn relax(&self, state: &mut PayloadState<T>) {
+        let (air, rest) = (self.kept[index::WIND], self.kept[index::RESIDUAL]);
+        state.wind = state.wind.map(|component| component * air);
+        state.residual = state.residual.map(|component| component * rest);
     }
 
     /// One step with q̈'s answers `rows` to (η, ζ, w, r, μ) at the rod `q`. `most` are the

@@ -20,6 +20,7 @@ pub(crate) mod index {
     pub(crate) const ROD: usize = 0;
     pub(crate) const RATE: usize = 2;
     pub(crate) const WIND: usize = 4;
+    pub(crate) const RESIDUAL: usize = 6;
     pub(crate) const OFFSET: usize = 8;
     pub(crate) const MASS: usize = 11;
 }

@@ -132,9 +132,6 @@ impl Sight {
         if let Some(fix) = &readings.fix {
             self.has_jumped |= self.navigation.fix(&position_fix(fix)) == Ok(Accepted::Reset);
         }
-        if let Some(pose) = &readings.pose {
-            self.capture(pose);
-        }
         if let Some(height) = readings.height {
             let _ = self.navigation.height(height as f32);
         }
@@ -143,6 +140,9 @@ impl Sight {
         }
         let thrust = readings.thrust.unwrap_or(modelled) as f32;
         let estimate = self.payload.step(Some(&motion), Some(thrust));
+        if let Some(pose) = &readings.pose {
+            self.capture(pose);
+        }
         self.estimate = Some(estimate);
         estimate.state.cast()
     }
