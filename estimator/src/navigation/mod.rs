@@ -34,6 +34,8 @@ const BLIND: u16 = 50;
 const STUBBORN: u8 = 15;
 /// A fix is refused beyond so many deviations, squared.
 const GATE: f64 = 100.0;
+/// Fixes come while the last one is not older, s.
+const RECENT: f64 = 0.5;
 /// What an unread accelerometer and gyro might have said, m/s² and rad/s.
 const UNREAD: [f64; 2] = [3.0, 0.3];
 
@@ -210,8 +212,8 @@ impl<T: Real> Navigation<T> {
         Ok(accepted)
     }
 
-    /// Height above the origin by pressure, m, up. Its offset and slow drift are followed, so that
-    /// it carries only where fixes are coarse or missing.
+    /// Height above the origin by pressure, m, up. Its offset follows the fixes while they come, so
+    /// that pressure carries on from the last of them where they are missing.
     ///
     /// # Errors
     /// [`Refused`] says why it is not taken.
@@ -223,7 +225,9 @@ impl<T: Real> Navigation<T> {
         let offset = self.barometer_offset.unwrap_or(difference);
         let innovation = difference - offset;
         // At some 25 Hz: a reading moves the offset by 1/25 of its time's share.
-        self.barometer_offset = Some(offset + innovation * (T::lit(0.04) / self.params.noise.barometer_time));
+        let share = T::lit(0.04) / self.params.noise.barometer_time;
+        let is_followed = self.fix_age < T::lit(RECENT);
+        self.barometer_offset = Some(if is_followed { offset + innovation * share } else { offset });
         let deviation = self.params.noise.barometer;
         self.wait(Kind::Height, &Vector3::new(innovation, T::zero(), T::zero()), [deviation; 2], T::zero());
         Ok(())

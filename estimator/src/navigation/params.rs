@@ -39,9 +39,10 @@ pub struct NavigationNoise<T> {
     pub velocity: [T; 2],
     /// Heading, rad, 10⁻³ to 3: more than its noise, since its error hardly changes.
     pub heading: T,
-    /// Height of the barometer, m, 0.01 to 100: likewise.
+    /// Height of the barometer, m, 0.01 to 100: likewise, for pressure wanders by decimetres in
+    /// seconds.
     pub barometer: T,
-    /// Time over which the barometer's offset is followed, s, 1 to 10⁴.
+    /// Time over which the barometer's offset follows the fixes, s, 1 to 10⁴.
     pub barometer_time: T,
     /// At the start: tilt and heading, rad, 10⁻³ to 3.
     pub start_tilt: T,
@@ -62,10 +63,10 @@ impl<T: Real> Default for NavigationNoise<T> {
             gyro_walk: T::lit(2e-5),
             accelerometer_walk: T::lit(3e-4),
             position: [T::lit(0.012), T::lit(0.019)],
-            velocity: [T::lit(0.04), T::lit(0.06)],
-            heading: T::lit(0.15),
-            barometer: T::lit(1.0),
-            barometer_time: T::lit(60.0),
+            velocity: [T::lit(0.03), T::lit(0.05)],
+            heading: T::lit(0.5),
+            barometer: T::lit(3.0),
+            barometer_time: T::lit(2.0),
             start_tilt: T::lit(0.02),
             start_heading: T::lit(0.1),
             start_gyro: T::lit(0.005),

@@ -8,6 +8,7 @@
 //! sums up the thrust model's residual; the [covariance](predict) moves in two of them, and each
 //! scalar has one of its own.
 
+mod glide;
 mod health;
 #[cfg(test)]
 mod jacobians;
@@ -28,6 +29,7 @@ use model::{Matrix3, OutOfRange, Real, State, Vector3};
 use crate::covariance::{Covariance, Scalar, dot};
 use crate::lever::{axes, swung};
 use crate::motion::Motion;
+use glide::Glide;
 use health::CableWatch;
 use load::{Innovations, Swing};
 use pendulum::{Pendulum, Pivot, Pull};
@@ -58,7 +60,8 @@ const UNREAD: f64 = 2.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate<T> {
     /// The law's state: payload and rod, with the line from the UAV's centre of mass to the load
-    /// for the rod.
+    /// for the rod. Where navigation jumps by 5 cm to 2 m, or 5 cm/s to 2 m/s, it glides to the new
+    /// place within some seconds; beyond, it jumps along.
     pub state: State<T>,
     /// The cable's pull m_L s by the pendulum, N.
     pub tension: T,
@@ -97,6 +100,7 @@ pub struct Payload<T> {
     fresh: [Innovations<T>; 2],
     taken: [Innovations<T>; 2],
     last: Motion<T>,
+    glide: Glide<T>,
     pull: Pull<T>,
     /// Periods without an input in a row, and in the running half cycle.
     missing: u16,
@@ -152,8 +156,10 @@ impl<T: Real> Payload<T> {
             fresh: [Innovations::none(); 2],
             taken: [Innovations::none(); 2],
             last: Motion::at_rest(Vector3::zeros(), params.gravity),
+            glide: Glide::none(),
             pull: Pull { u: Vector3::zeros(), tension: params.gravity, acceleration: Vector3::zeros() },
-            missing: 0,
+            // Nothing has been seen yet.
+            missing: 1,
             unread: T::zero(),
             params,
         })
@@ -245,7 +251,9 @@ impl<T: Real> Payload<T> {
     /// motion the last one goes on, without thrust nothing is learnt.
     #[inline(never)]
     pub fn step(&mut self, motion: Option<&Motion<T>>, thrust: Option<T>) -> Estimate<T> {
-        let before = self.last.body_rate;
+        let Motion { position: place, velocity: speed, body_rate: before, .. } = self.last;
+        // Where it is after a gap is news, not a jump.
+        let is_next = self.missing == 0;
         let usable = motion.filter(|motion| motion.is_usable());
         if let Some(motion) = usable {
             self.last = *motion;
@@ -266,6 +274,12 @@ impl<T: Real> Payload<T> {
             velocity: velocity + attitude * body_rate.cross(&params.hook),
             specific_force: attitude * halfway,
         };
+        if is_next && usable.is_some() {
+            let mut gained = pivot.specific_force * params.period;
+            gained.z += params.gravity * params.period;
+            self.glide.take(&(position - place - velocity * params.period), &(velocity - speed - gained));
+        }
+        self.glide.pass(params.period);
         self.force += pivot.specific_force;
         let pendulum = Pendulum::new(params, &self.state);
         self.pull = if self.watch.cable == Cable::Taut {
@@ -455,8 +469,8 @@ impl<T: Real> Payload<T> {
         let per_length = T::one() / line.dot(&line).sqrt();
         let rod = line * per_length;
         let state = State {
-            position: position + line,
-            velocity: load_velocity,
+            position: position + line + self.glide.rest,
+            velocity: load_velocity + self.glide.rate,
             rod,
             rod_rate: (closing - rod * rod.dot(&closing)) * per_length,
             attitude: *attitude,

@@ -3,8 +3,7 @@
 
 use controller::{Command, Matrix3, State, Vector3};
 use estimator::{
-    Accepted, Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload,
-    PayloadParams,
+    Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload, PayloadParams,
 };
 use std::collections::VecDeque;
 
@@ -26,7 +25,6 @@ pub struct Sight {
     rotors: RotorModel,
     mocap: Option<(f64, f64)>,
     estimate: Option<Estimate<f32>>,
-    has_jumped: bool,
 }
 
 /// Thrust as an autopilot without rotor speeds has it: the command, late and through a first-order
@@ -117,7 +115,6 @@ impl Sight {
             rotors: RotorModel::new(scenario, hover),
             mocap: sensors.mocap.map(|mocap| (mocap.noise * TRUST, mocap.attitude_noise * TRUST)),
             estimate: None,
-            has_jumped: false,
         })
     }
 
@@ -130,7 +127,7 @@ impl Sight {
         let motion = self.navigation.step(Some(&imu));
         // A refusal leaves the filter as it was: its health tells.
         if let Some(fix) = &readings.fix {
-            self.has_jumped |= self.navigation.fix(&position_fix(fix)) == Ok(Accepted::Reset);
+            let _ = self.navigation.fix(&position_fix(fix));
         }
         if let Some(height) = readings.height {
             let _ = self.navigation.height(height as f32);
@@ -179,11 +176,6 @@ impl Sight {
     #[must_use]
     pub fn navigation(&self) -> &Navigation<f32> {
         &self.navigation
-    }
-
-    /// Whether navigation has started anew since this was last asked.
-    pub fn has_jumped(&mut self) -> bool {
-        std::mem::take(&mut self.has_jumped)
     }
 }
 
