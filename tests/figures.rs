@@ -1,7 +1,7 @@
 //! The paper's figures, flown at 1 kHz, against the numbers of `hil-sim/scenarios/reference.toml`.
 
+use hil_sim::describe::path::{PathKind, SpeedSpec};
 use hil_sim::describe::reference::{Reference, Variant};
-use hil_sim::describe::route::SpeedSpec;
 use hil_sim::describe::scenario::{FIGURES, Law, Scenario, builtin};
 use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::metrics::Results;
@@ -51,7 +51,8 @@ fn varied(variant: &Variant) -> Scenario {
     }
     if let Some(wanted) = variant.speed {
         let Law::Follow { path, .. } = &mut scenario.controller.law else { panic!("{}: no path", variant.scenario) };
-        path.speed = SpeedSpec::Constant(wanted);
+        let PathKind::Profiled(spec) = &mut path.kind else { panic!("{}: no curve", variant.scenario) };
+        spec.speed = SpeedSpec::Constant(wanted);
     }
     scenario
 }

@@ -36,7 +36,7 @@ fn steady(scenarios: &[Scenario]) -> Vec<(&str, f64, f64)> {
         .par_iter()
         .map(|scenario| {
             let results = fly(scenario).results;
-            (&*scenario.name, results.steady_dc_max_m.unwrap(), results.steady_dc_rms_m.unwrap())
+            (&*scenario.name, results.dc_max_m.unwrap(), results.dc_rms_m.unwrap())
         })
         .collect()
 }
@@ -76,7 +76,7 @@ fn every_curve_is_invariant() {
             assert!(report.excesses.is_empty(), "{name}: {report}");
             scenario.duration_s =
                 (3.0 * report.lap_time * scenario.controller.rate_hz).ceil() / scenario.controller.rate_hz;
-            (*name, fly(&scenario).results.steady_dc_max_m.unwrap())
+            (*name, fly(&scenario).results.dc_max_m.unwrap())
         })
         .collect();
     for (name, max) in worst {

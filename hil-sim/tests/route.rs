@@ -1,212 +1,172 @@
-//! Paths as described by a user: the law against the witness on random formulas, and the errors of
-//! a description.
+//! Routes as described by a user: flown, checked, evaluated, and refused.
 
-use controller::Disturbance;
-use controller::{Gains, Path, State, Vector3, Vehicle, VehicleParams, follow};
 use hil_sim::describe::course::{PathSpec, parse_path};
-use proptest::prelude::*;
+use hil_sim::describe::scenario::{Law, ROUTES, Scenario, builtin};
+use hil_sim::fly::metrics::Results;
+use hil_sim::fly::run::{Arithmetic, fly_simply};
+use hil_sim::study::check::{Limits, Report};
+use hil_sim::study::eval;
 use serde_json::{Value, json};
-use witness::law::Operating;
-use witness::plant::VehicleParameters;
 
-/// ‖Δū‖/‖ū‖ between the f64 law and the witness on the same path; `None` where the witness
-/// finds the law singular.
-fn difference(path: &PathSpec, x: &[f64; 16], zeta: &[f64; 4]) -> Option<f64> {
-    let gains = Gains {
-        k1: [64.0, 192.0, 240.0, 160.0, 60.0, 12.0],
-        k2: [64.0, 192.0, 240.0, 160.0, 60.0, 12.0],
-        k3: [1.0, 5.0, 10.0, 10.0, 5.0],
-        k4: [1.0, 2.0],
-        integral: [0.0; 3],
+fn path(value: Value) -> PathSpec {
+    parse_path("path", value).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn scenario(name: &str) -> Scenario {
+    builtin(name).expect("it is built in").unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn check(name: &str) -> Report {
+    let scenario = scenario(name);
+    let Law::Follow { path, .. } = &scenario.controller.law else { panic!("{name} follows") };
+    let vehicle = controller::Vehicle::new(scenario.controller.vehicle).unwrap();
+    path.check(&vehicle, &Limits::of(&vehicle)).unwrap_or_else(|refusal| panic!("{name}: {refusal}"))
+}
+
+/// Within a millimetre of the route from joining on, without a step of thrust, and to rest within a
+/// millimetre of each stop.
+#[test]
+fn built_in_routes_are_flown_to_the_millimetre() {
+    for (name, _) in ROUTES {
+        let flight = fly_simply(&scenario(name), Arithmetic::F32).unwrap();
+        assert_eq!(flight.end.failure(), None, "{name}");
+        let Results { dc_max_m, stop_error_m, thrust_step_max, .. } = flight.results;
+        println!("{name}: d_C {dc_max_m:?}, off its stops {stop_error_m:?}, thrust {thrust_step_max:?}");
+        assert!(dc_max_m.unwrap() <= 1e-3, "{name}: {dc_max_m:?}");
+        assert!(thrust_step_max.unwrap() <= 0.01, "{name}: {thrust_step_max:?}");
+        match *name {
+            "figure-eight" => assert_eq!(stop_error_m, None),
+            _ => assert!(stop_error_m.unwrap() <= 1e-3, "{name}: {stop_error_m:?}"),
+        }
+    }
+}
+
+/// What `check` says of the time is what is flown, to the tenth that a start's smoothness leaves
+/// open; and each leg has its share.
+#[test]
+fn legs_make_up_the_route() {
+    for (name, legs) in
+        [("figure-eight", 32), ("survey-rows", 15), ("helix", 39), ("a-to-b", 2), ("two-kilometres", 39)]
+    {
+        let report = check(name);
+        assert!(report.excesses.is_empty(), "{name}");
+        let found = report.legs.unwrap();
+        assert_eq!(found.legs.len(), legs, "{name}");
+        let length: f64 = found.legs.iter().map(|leg| leg.length).sum();
+        // The lap's own sum, in another order.
+        assert!((length - report.lap.length()).abs() < 1e-9 * length, "{name}");
+        let time: f64 = found.legs.iter().map(|leg| leg.time).sum();
+        assert!((time + found.dwell - report.lap_time).abs() < 1e-9 * time, "{name}");
+    }
+}
+
+/// Ten kilometres with 200 wide corners, and one that is too tight for what its pace allows.
+#[test]
+fn a_long_route_names_the_leg_that_is_not_flyable() {
+    let points: Vec<[f64; 3]> = (0..200).map(|i| [50.0 * f64::from(i), 10.0 * f64::from(i % 2), -100.0]).collect();
+    let mut corner_m = vec![20.0; 200];
+    let route = |corner_m: &[f64]| {
+        path(json!({ "kind": "route", "points": points, "speed": 5.0, "corner_m": corner_m, "acceleration": 12.0 }))
     };
-    let vehicle = VehicleParameters::default();
-    let rows = [gains.k1, gains.k2, [1.0, 5.0, 10.0, 10.0, 5.0, 0.0], [1.0, 2.0, 0.0, 0.0, 0.0, 0.0]];
-    let wanted = path.witness(Operating { vehicle: &vehicle, x, zeta }, &rows, &[0.0; 3], &[0.0; 3]).ok()?;
-    let mut route = path.build::<f64>().unwrap();
-    let state = State::from_paper(x);
-    route.search(&state.position);
-    let found = follow(
-        &Vehicle::new(VehicleParams::paper()).unwrap(),
-        &mut route,
-        &gains,
-        &state,
-        zeta,
-        &[0.0; 3],
-        &Disturbance::none(),
-    );
-    let [t1, t2, t3] = wanted.torque;
-    let (a, b) = ([wanted.u_zeta, t1, t2, t3], &found.command.torque);
-    let norm = a.iter().map(|value| value * value).sum::<f64>().sqrt();
-    let off = (found.u_zeta - a[0]).powi(2) + (Vector3::new(t1, t2, t3) - b).dot(&(Vector3::new(t1, t2, t3) - b));
-    Some(off.sqrt() / norm)
+    let vehicle = controller::Vehicle::new(controller::VehicleParams::paper()).unwrap();
+    let check = |corner_m: &[f64]| route(corner_m).check(&vehicle, &Limits::of(&vehicle)).unwrap();
+    let legs = |report: &Report| -> Vec<_> { report.excesses.iter().map(|excess| excess.place.leg).collect() };
+    let wide = check(&corner_m);
+    // A hard start and stop are what such a pace asks for besides.
+    assert!(wide.lap.length() > 1e4 && legs(&wide).iter().all(|leg| [Some(0), Some(198)].contains(leg)));
+    corner_m[120] = 0.5;
+    let tight = check(&corner_m);
+    let new: Vec<_> = legs(&tight).into_iter().filter(|leg| ![Some(0), Some(198)].contains(leg)).collect();
+    assert!(!new.is_empty() && new.iter().all(|leg| [Some(119), Some(120)].contains(leg)), "{new:?}");
+    let named = tight.excesses.iter().any(|excess| excess.to_string().contains("at leg 120, ("));
+    assert!(named && tight.legs.unwrap().legs[120].factor < 1.0);
 }
 
-prop_compose! {
-    /// States as wide as those of the golden vectors, about a position.
-    fn state_near(p: [f64; 3])(
-        offset in prop::array::uniform3(-0.5..0.5_f64),
-        angles in prop::array::uniform5(-0.4..0.4_f64),
-        rates in prop::array::uniform8(-0.8..0.8_f64),
-        zeta in prop::array::uniform4(-1.5..1.5_f64),
-    ) -> ([f64; 16], [f64; 4]) {
-        let mut x = [0.0; 16];
-        for axis in 0..3 {
-            x[axis] = p[axis] + offset[axis];
-        }
-        x[3..8].copy_from_slice(&angles);
-        x[8..16].copy_from_slice(&rates);
-        (x, zeta)
-    }
-}
-
-/// Formulas of closed curves about (0, 0, −10) with every function of the language, by random
-/// constants.
-fn formula_path() -> impl Strategy<Value = Value> {
-    let surface = prop::sample::select(vec![
-        "(x/a)^2 + (y/b)^2 - 1",
-        "(x/a)^4 + (y/b)^4 - 1 + c*tanh(x*y/10)",
-        "exp((x/a)^2 + (y/b)^2) - exp(1) + c*sin(x)",
-        "ln(1 + (x/a)^2 + (y/b)^2) - ln(2) + c*cos(y/2)/5",
-        "sqrt(1 + x^2/a^2 + y^2/b^2) - sqrt(2) + c*sin(x + y)/9",
-        "((x/a)^2 + 0.3)^1.5 + ((y/b)^2 + 0.2)^1.7 - 1.5",
-        "2^(x^2/a^2 + y^2/b^2) - 2 + c*atan2(z + 13, 5 + x)/9",
-    ]);
-    let sheet = prop::sample::select(vec![
-        "z + 10 - c*sin(x/2)",
-        "z + 10 - c*tanh(y/3) - 0.1*x",
-        "z + 10 + c*exp(-(x^2 + y^2)/50)",
-        "(z + 10)*(2 + cos(y/4)) - c*x",
-        "atan2(z + 10, 10 + c*y) + c/20*x",
-        "z + 10 - c*ln(20 + x*y/5) + 3*c",
-        "(z + 15)^2 - 25 - c*x",
-    ]);
-    let speed = prop::sample::select(vec!["1.5", "1 + 0.3*x/a", "-2 + 0.1*sin(y)", "sqrt(4 + y^2/20)"]);
-    let yaw = prop::sample::select(vec!["tangent", "0.2*x", "atan2(-y, -x)", "0.3", "tanh(z + y/5)"]);
-    (surface, sheet, speed, yaw, 4.0..7.0_f64, 3.0..6.0_f64, -0.5..0.5_f64).prop_map(
-        |(h1, h2, speed, yaw, a, b, c)| {
-            json!({ "kind": "implicit", "h1": h1, "h2": h2, "speed": speed, "yaw": yaw,
-                    "constants": { "a": a, "b": b, "c": c } })
-        },
-    )
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, max_shrink_iters: 200, ..ProptestConfig::default() })]
-
-    #[test]
-    fn the_law_agrees_with_the_witness_on_any_formula(
-        (path, (x, zeta)) in formula_path().prop_flat_map(|path| {
-            // Somewhere on the curve's outer side along n1.
-            let a = path["constants"]["a"].as_f64().unwrap_or(5.0);
-            (Just(path), state_near([a, 1.0, -10.0]))
+/// The law in f64 and by the witness's own splines, on a route that crosses itself.
+#[test]
+fn eval_agrees_with_the_witness() {
+    let points: Vec<[f64; 3]> = (0..24)
+        .map(|i| {
+            let (sin, cos) = (std::f64::consts::TAU * f64::from(i) / 24.0).sin_cos();
+            [6.0 * cos, 6.0 * sin * cos, -10.0 + 0.5 * sin]
         })
-    ) {
-        let spec = parse_path("path", path.clone()).unwrap();
-        if let Some(difference) = difference(&spec, &x, &zeta) {
-            prop_assert!(difference <= 1e-8, "{difference:e} on {path}");
-        }
-    }
+        .collect();
+    let ask = |arithmetic: &str| {
+        let line = json!({
+            "law": "follow", "arithmetic": arithmetic,
+            "path": { "kind": "route", "points": points, "closed": true, "corner_m": "smooth", "speed": 1.0, "yaw": "tangent" },
+            "vehicle": { "payload_mass": 0.5, "uav_mass": 2.5, "inertia": [0.03, 0.03, 0.05], "rod_length": 2.0, "gravity": 9.81 },
+            "x": [4.9, 2.2, -10.2, 0.1, -0.05, 0.08, 0.02, 2.5, -0.6, 0.4, 0.1, 0.05, -0.1, 0.1, 0.02, -0.05],
+            "zeta": [0.1, -0.2, 0.05, 0.02],
+            "gains": { "k": [[720, 1764, 1624, 735, 175, 21], [720, 1764, 1624, 735, 175, 21], [120, 274, 225, 85, 15], [6, 5]] }
+        });
+        eval::evaluate(line.to_string().as_bytes()).unwrap_or_else(|error| panic!("{error}"))
+    };
+    let (wanted, double, single) = (ask("witness"), ask("f64"), ask("f32"));
+    let numbers = |answer: &eval::Answer| {
+        let mut numbers = answer.xi.clone();
+        numbers.extend(answer.torque);
+        numbers.extend([answer.u_zeta, answer.thrust]);
+        numbers
+    };
+    let error = |answer: &eval::Answer| {
+        let pairs = || numbers(answer).into_iter().zip(numbers(&wanted));
+        let size = pairs().map(|(_, b)| b * b).sum::<f64>().sqrt();
+        pairs().map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt() / size
+    };
+    // As the tests of the law on routes have it.
+    assert!(error(&double) < 1e-9, "{:e}", error(&double));
+    assert!(error(&single) < 2e-4, "{:e}", error(&single));
+    let det = |answer: &eval::Answer| answer.margins.path_det;
+    assert!((det(&double) - det(&wanted)).abs() < 1e-9, "{} {}", det(&double), det(&wanted));
+}
 
-    #[test]
-    fn the_law_agrees_with_the_witness_on_fourier_curves(
-        wave in prop::array::uniform3(-0.6..0.6_f64),
-        (x, zeta) in state_near([6.0, 0.5, -10.0]),
-    ) {
-        let path = json!({ "kind": "fourier", "center": [0.0, 0.0, -10.0], "reference": [0.1, 0.0, 1.0], "speed": 1.5,
-            "cos": [[6.0, 0.0, 0.0], [wave[0], 0.0, wave[1]]], "sin": [[0.0, 5.0, 0.0], [0.0, wave[2], wave[0]]],
-            "yaw": "tangent" });
-        let spec = parse_path("path", path.clone()).unwrap();
-        if let Some(difference) = difference(&spec, &x, &zeta) {
-            prop_assert!(difference <= 1e-8, "{difference:e} on {path}");
-        }
+/// An open route's way: d_C is the distance from the nearest leg, however long it is.
+#[test]
+fn distance_is_that_of_the_nearest_leg() {
+    // Two rows, the second with a stop, which has its nodes close together.
+    let route = path(json!({
+        "kind": "route", "points": [[0, 0, -10], [200, 0, -10], [200, 2, -10], [100, 2, -10], [0, 2, -10]],
+        "corner_m": 0.5, "speed": 2, "stops": [{ "index": 3, "dwell_s": 1 }]
+    }));
+    for (point, distance) in
+        [([101.3, 0.8, -10.0], 0.8), ([99.9, 1.3, -10.0], 0.7), ([50.0, -3.0, -6.0], 5.0), ([-3.0, -4.0, -10.0], 5.0)]
+    {
+        let found = route.distance(point);
+        // Straight legs, to rounding.
+        assert!((found - distance).abs() < 1e-9, "{point:?}: {found} against {distance}");
+    }
+    let outline = route.outline(100);
+    for (end, wanted) in [(outline[0], [0.0, 0.0, -10.0]), (outline[100], [0.0, 2.0, -10.0])] {
+        assert!((controller::Vector3::from(end) - controller::Vector3::from(wanted)).amax() < 1e-9, "{end:?}");
     }
 }
 
-/// Every built-in curve, and the speed that is bound by curvature.
 #[test]
-fn the_law_agrees_with_the_witness_on_the_built_in_kinds() {
-    let paths = [
-        json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": 1.0, "yaw": "tangent" }),
-        json!({ "kind": "ellipse", "a": 5.0, "b": 4.0, "c0": -10.0, "c1": 0.2, "speed": 1.0 }),
-        json!({ "kind": "bent", "a": 5.0, "b": 4.0, "c0": -10.0, "v0": 1.5, "v1": 0.5 }),
-        json!({ "kind": "superellipse", "a": 5.0, "b": 4.0, "half_exponent": 3, "c0": -10.0, "speed": 1.0 }),
-        json!({ "kind": "tilted", "center": [0.0, 0.0, -10.0], "normal": [0.3, 0.2, 1.0], "major": [1.0, 0.1, 0.0],
-                "a": 5.0, "b": 4.0, "speed": 1.2, "yaw": { "x": 0.3, "y": -0.2 } }),
-        json!({ "kind": "ellipse", "a": 5.0, "b": 3.0, "c0": -10.0, "c1": 0.2,
-                "speed": { "max": 3.0, "acceleration": 1.0 } }),
-        json!({ "kind": "fourier", "center": [0.0, 0.0, -10.0], "reference": [0.0, 0.0, 1.0],
-                "speed": { "max": 3.0, "acceleration": 1.0 }, "cos": [[5.0, 0.0, 0.5]], "sin": [[0.0, 4.0, 0.2]] }),
-    ];
-    let x = [5.2, 0.7, -10.3, 0.1, -0.2, 0.15, -0.1, 0.3, 0.2, 1.0, 0.3, 0.2, -0.1, 0.3, 0.1, -0.2];
-    for path in paths {
-        let spec = parse_path("path", path.clone()).unwrap();
-        let difference = difference(&spec, &x, &[0.3, -0.2, 0.4, 0.1]).unwrap();
-        assert!(difference <= 1e-10, "{difference:e} on {path}");
-    }
-}
-
-#[test]
-fn errors_name_the_field_and_the_column() {
-    let cases = [
-        (json!({ "kind": "helix", "speed": 1.0 }), "path.kind", "helix"),
-        (json!({ "kind": "circle", "radius": -5.0, "p3": -10.0, "speed": 1.0 }), "path.radius", "outside"),
-        (json!({ "kind": "circle", "radius": 5.0, "p3": -10.0 }), "path.speed", "missing"),
-        (json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": 1.0, "tilt": 1 }), "path.tilt", "unknown"),
-        (json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": [1.0] }), "path.speed", "neither"),
-        (json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": "2*w" }), "path.speed", "column 3"),
-        (
-            json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": 1, "yaw": "0.2*x)" }),
-            "path.yaw",
-            "column 6",
-        ),
-        (json!({ "kind": "implicit", "h1": "x^2 + + y", "h2": "z", "speed": 1 }), "path.h1", "column 7"),
-        (json!({ "kind": "implicit", "h1": "x^2 + y^2 - 1", "speed": 1 }), "path", "h2"),
-        (json!({ "kind": "bent", "a": 5.0, "b": 4.0, "c0": -10.0, "v0": 1.0 }), "path.speed", "v0 and v1"),
-        (
-            json!({ "kind": "superellipse", "a": 5.0, "b": 4.0, "half_exponent": 11, "c0": 0, "speed": 1 }),
-            "path.half_exponent",
-            "outside",
-        ),
-        (
-            json!({ "kind": "fourier", "center": [0, 0, 0], "reference": [0, 0, 1], "speed": 1, "cos": [[1, 0, 0]],
-            "sin": [] }),
-            "path.sin",
-            "0 rows",
-        ),
-        // The tangent runs along the reference direction.
-        (
-            json!({ "kind": "fourier", "center": [0, 0, 0], "reference": [1, 0, 0], "speed": 1, "cos": [[1, 0, 0]],
-            "sin": [[0, 1, 0]] }),
-            "path",
-            "reference",
-        ),
-        (
-            json!({ "kind": "circle", "radius": 5.0, "p3": -10.0, "speed": "c", "constants": { "c": "d" } }),
-            "path.constants.c",
-            "invalid type",
-        ),
-    ];
-    for (path, field, message) in cases {
-        let error = parse_path("path", path.clone()).expect_err(&path.to_string());
-        assert!(error.field.starts_with(field), "{path}: {error}");
-        assert!(error.to_string().contains(message), "{path}: {error}");
-    }
-}
-
-/// Of a curve that does not close the distance is that of the foot nearby: against the least over
-/// points of the curve.
-#[test]
-fn an_open_curve_has_a_distance() {
-    let open = parse_path("path", json!({ "kind": "implicit", "h1": "y - 2*sin(x/3)", "h2": "z + 10", "speed": 1 }));
-    let open = open.unwrap();
-    assert!(open.lap().is_err());
-    for point in [[0.0, 0.5, -10.0], [4.0, 3.0, -9.0], [-20.0, -2.5, -10.5], [7.0, 0.0, -10.0]] {
-        let away = |x: f64| {
-            let along = Vector3::new(x, 2.0 * (x / 3.0).sin(), -10.0) - Vector3::from(point);
-            along.dot(&along).sqrt()
-        };
-        let least = (-40_000..40_000).map(|i| away(1e-3 * f64::from(i))).fold(f64::INFINITY, f64::min);
-        let found = open.distance(point);
-        assert!((found - least).abs() < 1e-6, "{point:?}: {found} against {least}");
+fn what_is_no_route_is_refused_by_its_field() {
+    let route = |key: &str, value: Value| {
+        let mut fields = json!({ "kind": "route", "points": [[0, 0, -10], [30, 0, -10], [30, 20, -10]], "speed": 2 });
+        fields[key] = value;
+        fields
+    };
+    for (fields, field, message) in [
+        (route("points", json!([[0, 0, -10]])), "path.points.len", "2 to"),
+        (route("points", json!([[0, 0, -10], [30, 0, -10], [0, 0.1, -10]])), "path.points[1]", "turns"),
+        (route("points", json!([[0, 0, -10], [30, 0, -10], [30, 0.01, -10]])), "path.points[1]", "nearer"),
+        (route("points", json!([[0, 0, -10], [2e5, 0, -10]])), "path.points[1]", "100000"),
+        (route("speed", json!(0)), "path.speed", "0.05 to 100"),
+        (route("speed", json!([1, 2])), "path.speed", "2 values where there are 3 points"),
+        (route("corner_m", json!("round")), "path.corner_m", "smooth"),
+        (route("corner_m", json!(0)), "path.corner_m", "0.02"),
+        (route("yaw", json!([0, 1])), "path.yaw", "2 values"),
+        (route("stops", json!([{ "index": 3 }])), "path.stops[0].index", "0 to 2"),
+        (route("stops", json!([{ "index": 1, "dwell_s": -1 }])), "path.stops[0].dwell_s", "0 to"),
+        (route("acceleration", json!(0)), "path.acceleration", "0.05"),
+        (route("end", json!({ "again": 2 })), "path.end", "last point is its first"),
+        (route("radius", json!(2)), "path", "unknown field `radius`"),
+    ] {
+        let error = parse_path("path", fields.clone()).expect_err(&fields.to_string());
+        assert!(error.field.starts_with(field), "{fields}: {error}");
+        assert!(error.to_string().contains(message), "{fields}: {error}");
     }
 }

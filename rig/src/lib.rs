@@ -31,7 +31,7 @@ pub use curve::{AnyCurve, Field, HARMONICS, NoFormula, Shape};
 pub use entry::{Entry, Kind, Name, Refused};
 pub use error::SetupError;
 pub use parameters::Parameters;
-pub use profile::{AnyPath, AnySpeed, AnyYaw, path};
+pub use profile::{AnyPath, AnySpeed, AnyYaw, NoTable, path};
 pub use rig::{LawNumbers, Output, Rig, Telemetry};
 pub use setpoint::RateSetpoint;
 pub use table::{COUNT, Parameter, Run, Tabled, index_of, narrowed};

@@ -1,8 +1,9 @@
 //! `PATH_SPEED` to `PATH_YAW_Y`, `REF_RATE`: how fast a curve is flown and where the nose points.
 
 use controller::{
-    AlongTangent, Analytic, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Located, OutOfRange,
-    PointingAt, PositionSeries, Profiled, Real, ScalarField, Series, SpeedProfile, YawProfile, ranges,
+    AlongTangent, Analytic, ConstantSpeed, CurvatureLimited, Curved, FixedYaw, Formula, Implicit, Knot, Located,
+    OutOfRange, Outputs, Path, PointingAt, PositionSeries, Profiled, Real, Route, Run, ScalarField, Series,
+    SpeedProfile, Table, Vector3, YawProfile, ranges,
 };
 
 use crate::curve::{AnyCurve, NoFormula};
@@ -43,10 +44,66 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
     ),
 ];
 
-/// A path of any kind, chosen at run time: all from numbers, but for a curve by the formulas `F`
-/// and profiles by `G`.
-pub type AnyPath<T, F = NoFormula, G = NoFormula, const K: usize = { crate::HARMONICS }> =
-    Profiled<AnyCurve<T, F, K>, AnySpeed<T, G>, AnyYaw<T, G>>;
+/// A path of any kind, chosen at run time: a curve with its profiles, all from numbers but for
+/// formulas `F` of the curve and `G` of the profiles; or a route of a table `S`.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs, clippy::large_enum_variant)]
+pub enum AnyPath<T, F = NoFormula, G = NoFormula, const K: usize = { crate::HARMONICS }, S = NoTable> {
+    Profiled(Profiled<AnyCurve<T, F, K>, AnySpeed<T, G>, AnyYaw<T, G>>),
+    Route(Route<T, S>),
+}
+
+/// No table: what a program is made with that flies no routes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoTable {}
+
+impl<T> Table<T> for NoTable {
+    fn knots(&self) -> &[Knot<T>] {
+        match *self {}
+    }
+
+    fn runs(&self) -> &[Run<T>] {
+        match *self {}
+    }
+}
+
+macro_rules! either {
+    ($self:expr, $path:ident => $value:expr) => {
+        match $self {
+            AnyPath::Profiled($path) => $value,
+            AnyPath::Route($path) => $value,
+        }
+    };
+}
+
+impl<T, F, G, const K: usize, S> Path<T> for AnyPath<T, F, G, K, S>
+where
+    T: Real,
+    F: Implicit<T>,
+    G: ScalarField<T>,
+    S: Table<T>,
+{
+    #[inline]
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+        either!(self, path => path.outputs(position))
+    }
+
+    fn search(&mut self, position: &Vector3<T>) -> bool {
+        either!(self, path => path.search(position))
+    }
+
+    fn dwell(&self) -> Option<T> {
+        either!(self, path => path.dwell())
+    }
+
+    fn go_on(&mut self) -> bool {
+        either!(self, path => path.go_on())
+    }
+
+    fn set_backward(&mut self, is_backward: bool) -> bool {
+        either!(self, path => path.set_backward(is_backward))
+    }
+}
 
 /// A speed of any kind.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,11 +135,11 @@ impl<T: Real> ScalarField<T> for NoFormula {
 /// # Errors
 /// What curve or profile refuse, by the parameter's name where it is one parameter's value.
 pub fn path<T: Real>(parameters: &Parameters<T>) -> Result<AnyPath<T>, OutOfRange<T>> {
-    Ok(Profiled {
+    Ok(AnyPath::Profiled(Profiled {
         curve: AnyCurve::new(parameters)?,
         speed: AnySpeed::new(parameters)?,
         yaw: AnyYaw::new(parameters)?,
-    })
+    }))
 }
 
 impl<T: Real, F> AnySpeed<T, F> {

@@ -326,6 +326,10 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     fn restart(&mut self, state: &State<T>) {
         self.reset_integrals();
         self.approach = Approach::at(&mut self.path, &state.position);
+        if self.path.dwell().is_some() {
+            // What leads to a stop began at one.
+            self.speed_factor.restart();
+        }
     }
 
     fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused> {

@@ -1,4 +1,4 @@
-//! What a vehicle is told to fly: a [path](crate::describe::route) for the path-following law, or a
+//! What a vehicle is told to fly: a [path](crate::describe::path) for the path-following law, or a
 //! reference in time for the tracking law.
 
 use controller::{Circle, Real, Reference};
@@ -7,7 +7,7 @@ use serde::de::Deserializer;
 use std::f64::consts::TAU;
 
 use crate::describe::input::{Invalid, join, read, within};
-pub use crate::describe::route::{PathSpec, Route, parse_path};
+pub use crate::describe::path::{FlownPath, PathSpec, parse_path};
 use witness::plant::distance_to_circle;
 
 /// Largest speed of a reference, m/s.

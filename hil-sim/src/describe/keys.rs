@@ -255,7 +255,7 @@ pub const SECTIONS: &[Section] = &[
     },
     Section {
         table: "path",
-        about: "A closed curve. `kind` is \"circle\", \"ellipse\", \"bent\", \"superellipse\", \"tilted\", \"fourier\" or \"implicit\"; these keys are of all kinds.",
+        about: "A closed curve: `kind` is \"circle\", \"ellipse\", \"bent\", \"superellipse\", \"tilted\", \"fourier\" or \"implicit\", and these keys are of all of them. Or a \"route\", whose keys stand below.",
         least: "[path]\nkind = \"circle\"\nradius = 5.0\np3 = -10.0\nspeed = 1.0\n",
         keys: &[KIND, SPEED, YAW, CONSTANTS],
     },
@@ -328,6 +328,58 @@ pub const SECTIONS: &[Section] = &[
         keys: &[
             key("h1", "", Other("formula"), "", "First surface."),
             key("h2", "", Other("formula"), "", "Second surface."),
+        ],
+    },
+    Section {
+        table: "path, kind = \"route\"",
+        about: "Through waypoints, open or closed, crossing itself or not, with straight legs, blended corners and stops.",
+        least: "[path]\nkind = \"route\"\npoints = [[0.0, 0.0, -10.0], [40.0, 0.0, -10.0], [40.0, 30.0, -12.0]]\nspeed = 2.0\n",
+        keys: &[
+            KIND,
+            key(
+                "points",
+                "m",
+                Other("2 to 100000 points of 3 numbers, each -100000 to 100000; closed from 3"),
+                "",
+                "Waypoints in N, at least 0.05 m apart.",
+            ),
+            key("closed", "", Word(&["true", "false"]), "false", "The last waypoint leads back to the first."),
+            key(
+                "corner_m",
+                "m",
+                Other("0.02 to 1000, \"smooth\", or a list of these, one each"),
+                "2.0",
+                "How far from a waypoint its corner's blend begins, at most half of either leg. Smooth: the curve passes through it.",
+            ),
+            key(
+                "speed",
+                "m/s",
+                Other("0.05 to 100, or a list, one each"),
+                "",
+                "Of the leg that begins there; less in bends and before stops.",
+            ),
+            key(
+                "yaw",
+                "rad",
+                Other("-1000 to 1000, a list of these, one each, \"tangent\", or { x, y }"),
+                "0.0",
+                "ψ_d, changing evenly from waypoint to waypoint; with x and y the nose points to a vertical line.",
+            ),
+            key(
+                "stops",
+                "",
+                Other("list of { index, dwell_s }"),
+                "[]",
+                "Waypoints, counted from 0, at which the payload rests for so long; without dwell_s until it is told to go on. An open route ends at rest.",
+            ),
+            key("acceleration", "m/s²", Number(0.05, 20.0), "1.0", "Along the route and across it."),
+            key(
+                "end",
+                "",
+                Other("\"hover\", { back = times }, { again = times }"),
+                "\"hover\"",
+                "What is flown after the last waypoint: nothing, the way back and forth, or the same once more.",
+            ),
         ],
     },
     Section {

@@ -4,6 +4,6 @@ pub mod course;
 pub mod formula;
 pub mod input;
 pub mod keys;
+pub mod path;
 pub mod reference;
-pub mod route;
 pub mod scenario;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::describe::scenario::{Law, Scenario};
 use crate::fly::flight::Moment;
+use crate::fly::stops::Stops;
 use controller::Vector3;
 
 /// d_C below which a flight counts as settled, m.
@@ -35,12 +36,19 @@ pub struct Results {
     /// Largest d_C from the release by the obstacle on, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dc_max_after_release_m: Option<f64>,
-    /// Largest d_C in the steady time, m.
+    /// Largest d_C in the steady time, m; in the whole flight where none is stated.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub steady_dc_max_m: Option<f64>,
-    /// Root mean square of d_C over the steady time, m.
+    pub dc_max_m: Option<f64>,
+    /// Root mean square of d_C over the same time, m.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub steady_dc_rms_m: Option<f64>,
+    pub dc_rms_m: Option<f64>,
+    /// Largest distance of the payload from a route's stop when it was slowest there, m, over the
+    /// stops at which it rested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stop_error_m: Option<f64>,
+    /// Largest change of T from one period to the next, as a share of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thrust_step_max: Option<f64>,
     /// Mean of √(p1² + p2²) − radius over the steady time, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steady_radius_error_m: Option<f64>,
@@ -96,6 +104,9 @@ pub struct Metrics<'a> {
     peak_u: f64,
     min_thrust: f64,
     peak_torque: f64,
+    last_thrust: Option<f64>,
+    thrust_step: f64,
+    stops: Stops,
     dc_after_release: Option<f64>,
     distance: Spread,
     distance_squared: Spread,
@@ -121,6 +132,9 @@ impl<'a> Metrics<'a> {
             peak_u: 0.0,
             min_thrust: f64::INFINITY,
             peak_torque: 0.0,
+            last_thrust: None,
+            thrust_step: 0.0,
+            stops: Stops::of(&scenario.controller.law),
             dc_after_release: None,
             distance: Spread::default(),
             distance_squared: Spread::default(),
@@ -147,7 +161,8 @@ impl<'a> Metrics<'a> {
         if reached(self.released_s) {
             self.dc_after_release = Some(self.dc_after_release.unwrap_or(0.0).max(distance));
         }
-        if reached(self.steady_from_s) {
+        self.stops.push(&moment.state.position, &moment.state.velocity);
+        if self.steady_from_s.is_none() || reached(self.steady_from_s) {
             self.distance.push(distance);
             self.distance_squared.push(distance * distance);
         }
@@ -159,6 +174,8 @@ impl<'a> Metrics<'a> {
             self.p3.push(p3);
             self.speed.push(speed);
         }
+        // Not across an obstacle, after which the law begins anew.
+        let last_thrust = self.last_thrust.take();
         if let Some(decision) = moment.decision {
             let thrust = decision.command.thrust;
             let torque = decision.command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
@@ -166,6 +183,10 @@ impl<'a> Metrics<'a> {
             self.peak_u = self.peak_u.max(thrust.hypot(torque));
             self.min_thrust = self.min_thrust.min(thrust);
             self.peak_torque = self.peak_torque.max(torque);
+            if let Some(last) = last_thrust.filter(|last| *last > 0.0) {
+                self.thrust_step = self.thrust_step.max((thrust / last - 1.0).abs());
+            }
+            self.last_thrust = Some(thrust);
         }
     }
 
@@ -180,8 +201,10 @@ impl<'a> Metrics<'a> {
             min_thrust_n: Some(self.min_thrust),
             peak_torque_nm: Some(self.peak_torque),
             dc_max_after_release_m: self.dc_after_release,
-            steady_dc_max_m: self.distance.max(),
-            steady_dc_rms_m: self.distance_squared.mean().map(f64::sqrt),
+            dc_max_m: self.distance.max(),
+            dc_rms_m: self.distance_squared.mean().map(f64::sqrt),
+            stop_error_m: self.stops.error(),
+            thrust_step_max: Some(self.thrust_step),
             steady_radius_error_m: self.radius.mean(),
             steady_p3_error_m: self.p3.mean(),
             steady_speed_error_m_s: self.speed.mean(),

@@ -14,4 +14,5 @@ pub mod pilot;
 pub mod run;
 pub mod sample;
 pub mod sight;
+pub mod stops;
 pub mod twin;

@@ -5,7 +5,7 @@ use controller::{
     Command, Disturbance, Fault, Follower, Margins, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle,
 };
 
-use crate::describe::course::{ReferenceSpec, Route};
+use crate::describe::course::{FlownPath, ReferenceSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
 
 /// Whatever answers states with commands: a law in this program, or a target at the other end of a
@@ -25,7 +25,7 @@ pub trait Answers {
 /// A controller at work in the scalar `T`.
 pub enum Pilot<T> {
     /// Path following.
-    Follow(Box<Follower<T, Route<T>>>),
+    Follow(Box<Follower<T, FlownPath<T>>>),
     /// Trajectory tracking, with its reference.
     Track(Box<Tracker<T>>, ReferenceSpec),
 }

@@ -4,7 +4,7 @@ use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, Ve
 use rig::{HARMONICS, Parameter, Parameters, Refused, Run, Shape, parameter, run};
 
 use super::HilError;
-use crate::describe::route::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
+use crate::describe::path::{CurveSpec, PathKind, PathSpec, SpeedSpec, YawSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
 
 /// The parameters with which a [`Rig`](rig::Rig) makes the law that `spec` describes. That is the
@@ -82,6 +82,12 @@ fn open_up(all: &mut Parameters<f64>) -> Result<(), HilError> {
 /// Sets the path's curve, speed and yaw.
 fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), HilError> {
     let formula = |what: &str| Err(HilError::Unsupported(format!("{what} by formula is for simulation only")));
+    let path = match &path.kind {
+        PathKind::Profiled(path) => path,
+        PathKind::Route(_) => {
+            return Err(HilError::Unsupported("a route is for simulation only: the target takes no table".into()));
+        }
+    };
     match &path.curve {
         CurveSpec::Numbers(described) => {
             one(all, parameter!("PATH_KIND"), described.get(parameter!("PATH_KIND")))?;

@@ -209,7 +209,7 @@ impl Point {
     fn follow<T: Real>(&self, path: &PathSpec, gains: &Gains<f64>) -> Result<Answer, Invalid> {
         let mut path = path.build::<T>().map_err(|error| Invalid::out_of_range("path", error))?;
         let state = self.state();
-        path.search(&state.position);
+        while !path.search(&state.position) {}
         let solution = follow(
             &self.vehicle()?,
             &mut path,

@@ -242,6 +242,29 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         T::lit(self.place.span as f64) + self.place.along
     }
 
+    /// The curve's point there, N, m.
+    pub fn point(&self) -> Vector3<T> {
+        let [c, ..] = &self.local;
+        self.anchor + c
+    }
+
+    /// By how much the tangent turns there over a span, rad.
+    pub fn turn(&self) -> T {
+        let [_, first, half, ..] = &self.local;
+        let across = first.cross(half);
+        across.dot(&across).sqrt() * T::lit(2.0) / first.dot(first)
+    }
+
+    /// Goes to the place `parameter` of run `run`, as if the payload had been nearest to it: for
+    /// what looks along a route without flying it.
+    pub fn go_to(&mut self, run: usize, parameter: T) {
+        self.begin_run(run);
+        let last = self.spans().saturating_sub(1);
+        let span = parameter.max(T::zero()).to_f64() as usize;
+        let span = span.min(last);
+        self.settle(Place { span, along: parameter - T::lit(span as f64) });
+    }
+
     /// The same, with something to fly after the last run.
     pub fn with_end(self, end: End) -> Self {
         Self { end, ..self }

@@ -2,6 +2,8 @@
 
 use model::{OutOfRange, Real};
 
+use crate::path::spline::POINTS;
+
 /// A control point of a route's splines. Plain data: a table of them can stand in a `const`, in
 /// flash.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,6 +66,12 @@ pub struct Run<T> {
 }
 
 impl<T: Real> Run<T> {
+    /// The parameters from its first waypoint to its last; of a closed one, once round.
+    pub fn flown(&self) -> core::ops::Range<usize> {
+        let spans = self.knots.saturating_sub(POINTS - 1);
+        if self.is_closed { 0..spans } else { BEYOND..spans.saturating_sub(BEYOND) }
+    }
+
     /// The same run with its number rounded to another scalar.
     pub fn cast<U: Real>(&self) -> Run<U> {
         let Self { first, knots, is_closed, dwell } = *self;

@@ -47,12 +47,15 @@ pub const CURVES: &[(&str, &str)] = scenarios![
     "building-heavy",
 ];
 
+/// Routes: what a curve that closes without crossing itself can't be.
+pub const ROUTES: &[(&str, &str)] = scenarios!["figure-eight", "survey-rows", "helix", "a-to-b", "two-kilometres"];
+
 /// The scenario of this name, if there is one.
 ///
 /// # Errors
 /// [`ScenarioError`] as for any file.
 pub fn builtin(name: &str) -> Option<Result<Scenario, ScenarioError>> {
-    let (name, text) = FIGURES.iter().chain(CURVES).find(|(known, _)| *known == name)?;
+    let (name, text) = FIGURES.iter().chain(CURVES).chain(ROUTES).find(|(known, _)| *known == name)?;
     Some(Scenario::parse(&format!("hil-sim/scenarios/{name}.toml"), text))
 }
 
@@ -62,7 +65,7 @@ mod tests {
 
     #[test]
     fn every_built_in_scenario_is_valid() {
-        for (name, _) in FIGURES.iter().chain(CURVES) {
+        for (name, _) in FIGURES.iter().chain(CURVES).chain(ROUTES) {
             let scenario = builtin(name).expect("it is in the list").unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(scenario.name, *name);
         }

@@ -46,7 +46,7 @@ mod library;
 mod steady;
 
 pub use estimator::EstimatorSpec;
-pub use library::{CURVES, FIGURES, builtin};
+pub use library::{CURVES, FIGURES, ROUTES, builtin};
 
 use controller::{ActuatorLimits, Command, Gains, ObserverParams, Sampling, State, TrackGains, VehicleParams};
 

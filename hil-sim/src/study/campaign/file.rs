@@ -28,7 +28,7 @@ use toml::Table;
 
 use super::draw::{Distribution, Start, StartFields, set};
 use crate::describe::input::{Invalid, read, within};
-use crate::describe::route::PathSpec;
+use crate::describe::path::PathSpec;
 use crate::describe::scenario::{Law, Scenario};
 use crate::world::Seed;
 use crate::world::random::Purpose;

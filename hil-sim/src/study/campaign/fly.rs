@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::file::{ApproachFields, Campaign, Drawn};
 use crate::describe::input::Invalid;
-use crate::describe::route::Route;
+use crate::describe::path::FlownPath;
 use crate::describe::scenario::{ControllerSpec, Law};
 use crate::fly::fault::describe;
 use crate::fly::flight::{Control, End, LOST_M, Moment};
@@ -18,7 +18,7 @@ use crate::world::Seed;
 
 /// The supervised law in f32, asked to follow its path from the first step on.
 pub struct Supervised {
-    supervisor: Supervisor<f32, Follow<f32, Route<f32>>>,
+    supervisor: Supervisor<f32, Follow<f32, FlownPath<f32>>>,
 }
 
 impl Supervised {

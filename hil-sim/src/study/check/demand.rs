@@ -70,6 +70,15 @@ macro_rules! quantities {
                 $(self.$field.take($field.min, place);)+
             }
 
+            /// Of two parts.
+            pub(super) fn joined(mut self, other: Self) -> Self {
+                $(
+                    self.$field.take(other.$field.min, other.$field.min_at);
+                    self.$field.take(other.$field.max, other.$field.max_at);
+                )+
+                self
+            }
+
             /// Line by line.
             pub(super) fn lines(&self) -> impl Iterator<Item = Line<'_>> {
                 [$(Line { name: $name, range: &self.$field, unit: ($unit, $per_si) },)+].into_iter()

@@ -20,6 +20,8 @@ pub struct Node {
     pub motion: Motion,
     /// |∇h1 × ∇h2|.
     pub regularity: f64,
+    /// Of a route, the leg.
+    pub leg: Option<usize>,
 }
 
 impl Node {
@@ -28,9 +30,9 @@ impl Node {
     /// # Errors
     /// [`Refusal`] if it has none.
     pub(super) fn at<P: Path<f64> + ?Sized>(path: &mut P, frame: &Frame, arc: f64) -> Result<Self, Refusal> {
-        let place = Place { position: frame.position, arc };
+        let place = Place::of_curve(frame.position, arc);
         let motion = unit_speed(path, frame).ok_or_else(|| Reason::NotSmooth.at(place))?;
-        Ok(Self { arc, motion, regularity: frame.regularity() })
+        Ok(Self { arc, motion, regularity: frame.regularity(), leg: None })
     }
 
     /// The point, in N, m.
@@ -51,14 +53,35 @@ impl Node {
     /// Where it is.
     #[must_use]
     pub fn place(&self) -> Place {
-        Place { position: self.position(), arc: self.arc }
+        Place { position: self.position(), arc: self.arc, leg: self.leg }
     }
 }
 
-/// A closed curve, walked once round. Never empty; the last node is the first again, one length on.
+/// A curve walked once, round or from end to end. Never empty; the last node of a closed one is the
+/// first again, one length on.
 #[derive(Clone, Debug)]
 pub struct Lap {
     nodes: Vec<Node>,
+    is_closed: bool,
+    blocks: Vec<Block>,
+}
+
+/// Segments in a block.
+const BLOCK: usize = 32;
+
+/// A ball that holds the chords of [`BLOCK`] segments in a row.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    center: Vector3<f64>,
+    radius: f64,
+}
+
+impl Block {
+    fn of(nodes: &[Node]) -> Self {
+        let center = nodes.iter().map(Node::position).sum::<Vector3<f64>>() / nodes.len() as f64;
+        let radius = nodes.iter().map(|node| length(&(node.position() - center))).fold(0.0, f64::max);
+        Self { center, radius }
+    }
 }
 
 /// A curve's nearest point to a given one.
@@ -84,8 +107,16 @@ pub struct Approach {
 }
 
 impl Lap {
-    pub(super) fn new(nodes: Vec<Node>) -> Self {
-        Self { nodes }
+    pub(super) fn new(nodes: Vec<Node>, is_closed: bool) -> Self {
+        let ends = (0..nodes.len() - 1).step_by(BLOCK);
+        let blocks = ends.map(|from| Block::of(&nodes[from..(from + BLOCK + 1).min(nodes.len())])).collect();
+        Self { nodes, is_closed, blocks }
+    }
+
+    /// Whether it ends where it began.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.is_closed
     }
 
     /// Its points in order, the last equal to the first.
@@ -108,28 +139,52 @@ impl Lap {
             .fold(&self.nodes[0], |best, node| if node.curvature() > best.curvature() { node } else { best })
     }
 
-    /// The point at an arc length, modulo the curve's.
+    /// The point at an arc length, modulo that of a closed curve, within that of an open one.
     #[must_use]
     pub fn at(&self, arc: f64) -> Place {
-        let arc = arc.rem_euclid(self.length());
+        let arc = if self.is_closed { arc.rem_euclid(self.length()) } else { arc.clamp(0.0, self.length()) };
         let after = self.nodes.partition_point(|node| node.arc <= arc).clamp(1, self.nodes.len() - 1);
         let (from, to) = (&self.nodes[after - 1], &self.nodes[after]);
         let segment = Segment::between(from, to);
-        Place { position: segment.point((arc - from.arc) / segment.length), arc }
+        Place { position: segment.point((arc - from.arc) / segment.length), arc, leg: from.leg }
     }
 
     /// The curve's nearest point, over the whole of it.
     #[must_use]
     pub fn nearest(&self, position: Vector3<f64>) -> Nearest {
-        let squared = |v: Vector3<f64>| v.dot(&v);
+        // Whose ball's far side is nearer than another's near side holds the nearest point.
+        let reach = |block: &Block| (length(&(position - block.center)), block.radius);
+        let far = self.blocks.iter().map(reach).map(|(away, radius)| away + radius).fold(f64::INFINITY, f64::min);
         let (mut best, mut least) = (0, f64::INFINITY);
-        for (index, node) in self.nodes.iter().enumerate() {
-            let distance = squared(node.position() - position);
-            if distance < least {
-                (best, least) = (index, distance);
+        for (index, block) in self.blocks.iter().enumerate() {
+            let (away, radius) = reach(block);
+            if away - radius > far {
+                continue;
+            }
+            let first = index * BLOCK;
+            for (offset, [from, to]) in self.nodes[first..].array_windows().take(BLOCK).enumerate() {
+                let distance = squared_distance(position, from.position(), to.position());
+                if distance < least {
+                    (best, least) = (first + offset, distance);
+                }
             }
         }
-        self.nearest_on(best % (self.nodes.len() - 1), position)
+        // A segment leaves its chord by little: one beside the nearest chord may be nearer.
+        let last = self.nodes.len() - 2;
+        let before = if best > 0 { Some(best - 1) } else { self.is_closed.then_some(last) };
+        let after = if best < last { Some(best + 1) } else { self.is_closed.then_some(0) };
+        let mut nearest = self.segment(best).nearest(position);
+        for index in before.into_iter().chain(after) {
+            let beside = self.segment(index).nearest(position);
+            if beside.distance < nearest.distance {
+                nearest = beside;
+            }
+        }
+        nearest
+    }
+
+    fn segment(&self, index: usize) -> Segment {
+        Segment::between(&self.nodes[index], &self.nodes[index + 1])
     }
 
     /// The two branches that come closest: points whose join is normal to the curve at both, which
@@ -220,7 +275,7 @@ impl Lap {
         for _ in 0..50 {
             let middle = 0.5 * (low + high);
             let (position, slope) = (segment.point(middle), segment.slope(middle));
-            here = Place { position, arc: segment.arc + middle * segment.length };
+            here = segment.place(middle);
             // The branch passes within a step of its node.
             there = self.nearest_on(from.node, position);
             let along = (there.place.position - position).dot(&slope);
@@ -250,13 +305,21 @@ impl Lap {
     }
 
     /// The nearest point within the segments on both sides of the node `index`, which is not the
-    /// last.
+    /// last, of a closed curve.
     fn nearest_on(&self, index: usize, position: Vector3<f64>) -> Nearest {
         let before = if index == 0 { self.nodes.len() - 2 } else { index - 1 };
-        let left = Segment::between(&self.nodes[before], &self.nodes[before + 1]).nearest(position);
-        let right = Segment::between(&self.nodes[index], &self.nodes[index + 1]).nearest(position);
+        let (left, right) = (self.segment(before).nearest(position), self.segment(index).nearest(position));
         if left.distance < right.distance { left } else { right }
     }
+}
+
+/// Squared distance of `position` from the chord between two points, m².
+fn squared_distance(position: Vector3<f64>, from: Vector3<f64>, to: Vector3<f64>) -> f64 {
+    let (chord, way) = (to - from, position - from);
+    let square = chord.dot(&chord);
+    let along = if square > 0.0 { (way.dot(&chord) / square).clamp(0.0, 1.0) } else { 0.0 };
+    let away = way - chord * along;
+    away.dot(&away)
 }
 
 /// The foot on another branch of the curve, from a node.
@@ -273,6 +336,7 @@ struct BranchFoot {
 /// to 1.
 struct Segment {
     arc: f64,
+    leg: Option<usize>,
     length: f64,
     coefficients: [Vector3<f64>; 4],
 }
@@ -283,12 +347,21 @@ impl Segment {
         let (p, q) = (from.position(), to.position());
         let (u, v) = (from.tangent() * length, to.tangent() * length);
         let join = q - p;
-        Self { arc: from.arc, length, coefficients: [p, u, join * 3.0 - u * 2.0 - v, u + v - join * 2.0] }
+        Self {
+            arc: from.arc,
+            leg: from.leg,
+            length,
+            coefficients: [p, u, join * 3.0 - u * 2.0 - v, u + v - join * 2.0],
+        }
     }
 
     fn point(&self, t: f64) -> Vector3<f64> {
         let [c0, c1, c2, c3] = self.coefficients;
         c0 + (c1 + (c2 + c3 * t) * t) * t
+    }
+
+    fn place(&self, t: f64) -> Place {
+        Place { position: self.point(t), arc: self.arc + t * self.length, leg: self.leg }
     }
 
     /// Derivative by the parameter.
@@ -313,9 +386,11 @@ impl Segment {
             t = (t + step).clamp(0.0, 1.0);
         }
         let (point, slope) = at(t);
+        // A route stops between two nodes at the same place, which are no segment.
+        let is_none = self.length == 0.0;
         Nearest {
-            distance: length(&(position - point)),
-            place: Place { position: point, arc: self.arc + t * self.length },
+            distance: if is_none { f64::INFINITY } else { length(&(position - point)) },
+            place: self.place(t),
             tangent: slope / length(&slope),
         }
     }

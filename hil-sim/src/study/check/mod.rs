@@ -13,6 +13,7 @@ pub mod probe;
 mod profile;
 pub mod refusal;
 mod report;
+pub mod route;
 pub mod steady;
 pub mod walk;
 
@@ -20,6 +21,7 @@ pub use demand::{Demand, Range};
 pub use lap::{Approach, Lap, Nearest, Node};
 pub use limits::Limits;
 pub use refusal::{Place, Reason, Refusal};
+pub use route::{Leg, Legs};
 pub use steady::Steady;
 
 use controller::{Path, Vector3, Vehicle};
@@ -47,12 +49,12 @@ pub struct Fastest {
     pub then: Option<Excess>,
 }
 
-/// The answer for a curve that closes and is smooth.
+/// The answer for a curve that closes and is smooth, or for a route.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// The curve.
     pub lap: Lap,
-    /// Time of a lap at the path's speed, s.
+    /// Time of a lap at the path's speed, of a route to its end, s.
     pub lap_time: f64,
     /// |∇h1 × ∇h2| over the lap, in the surfaces' units.
     pub regularity: Range,
@@ -62,8 +64,10 @@ pub struct Report {
     pub demand: Demand,
     /// Limits that are not kept.
     pub excesses: Vec<Excess>,
-    /// The highest constant speed within the limits, if there is one above [`SLOWEST`].
+    /// The highest constant speed within the limits, if there is one above [`SLOWEST`]; of a curve.
     pub fastest: Option<Fastest>,
+    /// Of a route.
+    pub legs: Option<Legs>,
 }
 
 /// Range of the search for the highest speed, m/s.
@@ -108,7 +112,7 @@ pub fn check<P: Path<f64> + ?Sized>(
     let excesses = demand.excesses(limits);
     let forwards = motions[0].0[1].dot(&lap.nodes()[0].tangent()) > 0.0;
     let fastest = fastest(path, &lap, vehicle, limits, if forwards { 1.0 } else { -1.0 });
-    Ok(Report { lap, lap_time, regularity, branches, demand, excesses, fastest })
+    Ok(Report { lap, lap_time, regularity, branches, demand, excesses, fastest, legs: None })
 }
 
 /// The motion at the prescribed speed and the yaw along it, at every node.
@@ -121,7 +125,7 @@ fn motions<P: Path<f64> + ?Sized>(path: &mut P, lap: &Lap) -> Result<Vec<(Motion
             let (motion, yaw) = prescribed(path, node.position()).map_err(|reason| reason.at(node.place()))?;
             let speed = motion[1].dot(&node.tangent());
             // From the second node on the sign must stay.
-            if speed * direction < 0.0 {
+            if speed == 0.0 || speed * direction < 0.0 {
                 return Err(Reason::Stops.at(node.place()));
             }
             direction = speed;
@@ -135,9 +139,6 @@ fn prescribed<P: Path<f64> + ?Sized>(path: &mut P, position: Vector3<f64>) -> Re
     let frame = Frame::at(path, position).ok_or(Reason::Undefined)?;
     let motion = prescribed_speed(path, &frame).ok_or(Reason::Undefined)?;
     let yaw = yaw(path, &motion);
-    if motion[1].dot(&frame.tangent) == 0.0 {
-        return Err(Reason::Stops);
-    }
     if yaw.iter().all(|value| value.is_finite()) { Ok((motion, yaw)) } else { Err(Reason::Undefined) }
 }
 
@@ -152,7 +153,21 @@ pub fn steady_at<P: Path<f64> + ?Sized>(
     place: Place,
 ) -> Result<Steady, Refusal> {
     let (motion, yaw) = prescribed(path, place.position).map_err(|reason| reason.at(place))?;
+    if motion[1] == Vector3::zeros() {
+        return Err(Reason::Stops.at(place));
+    }
     Steady::of(vehicle, &motion, &yaw).ok_or_else(|| Reason::FreeFall.at(place))
+}
+
+/// The vehicle at rest at a point of the path, with its yaw.
+///
+/// # Errors
+/// [`Refusal`] if the yaw has no value there.
+pub fn rest_at<P: Path<f64> + ?Sized>(path: &mut P, vehicle: &Vehicle<f64>, place: Place) -> Result<Steady, Refusal> {
+    let mut motion = [Vector3::zeros(); 7];
+    motion[0] = place.position;
+    let yaw = yaw(path, &motion);
+    Steady::of(vehicle, &motion, &yaw).ok_or_else(|| Reason::Undefined.at(place))
 }
 
 /// The highest constant speed whose demand keeps to the limits all the way up to it.

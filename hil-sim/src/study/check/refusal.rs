@@ -10,12 +10,25 @@ pub struct Place {
     pub position: Vector3<f64>,
     /// Arc length from where the walk started, m.
     pub arc: f64,
+    /// Of a route, the leg, which is numbered by the waypoint that it begins at.
+    pub leg: Option<usize>,
+}
+
+impl Place {
+    /// A place of a curve, which has no legs.
+    #[must_use]
+    pub fn of_curve(position: Vector3<f64>, arc: f64) -> Self {
+        Self { position, arc, leg: None }
+    }
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [x, y, z] = [0, 1, 2].map(|axis| self.position[axis]);
-        write!(f, "({x:.3}, {y:.3}, {z:.3}) m, {:.3} m along the curve", self.arc)
+        match self.leg {
+            None => write!(f, "({x:.3}, {y:.3}, {z:.3}) m, {:.3} m along the curve", self.arc),
+            Some(leg) => write!(f, "leg {leg}, ({x:.3}, {y:.3}, {z:.3}) m, {:.3} m along the route", self.arc),
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use controller::{Path, Vector3};
 
 /// Largest turn of the tangent over one step, rad. A cubic through both ends with their tangents is
 /// then within R·0.02⁴/384 = 4e-10 R of the curve.
-const TURN: f64 = 0.02;
+pub(super) const TURN: f64 = 0.02;
 /// Largest step as a part of the curve's extent so far, so that straight stretches do not hide a
 /// bend behind them.
 const STRETCH: f64 = 0.01;
@@ -53,19 +53,19 @@ pub fn walk<P: Path<f64> + ?Sized>(path: &mut P, start: Frame) -> Result<Lap, Re
             nodes.push(Node { arc, ..nodes[0] });
             regular(path, &nodes)?;
             smooth(path, &nodes)?;
-            return Ok(Lap::new(nodes));
+            return Ok(Lap::new(nodes, true));
         }
 
         arc += arc_of(chord, turn);
         frame = next;
         extent = extent.max(length(&(frame.position - start.position)));
         if length(&frame.position) > FURTHEST {
-            return Err(Reason::Open.at(Place { position: frame.position, arc }));
+            return Err(Reason::Open.at(Place::of_curve(frame.position, arc)));
         }
         nodes.push(Node::at(path, &frame, arc)?);
         step = if turn < TURN / 2.0 { taken * 1.5 } else { taken };
     }
-    Err(Reason::Endless.at(Place { position: frame.position, arc }))
+    Err(Reason::Endless.at(Place::of_curve(frame.position, arc)))
 }
 
 /// The next point along the curve and the step that led there, halved until the curve is smooth
@@ -77,7 +77,7 @@ fn advance<P: Path<f64> + ?Sized>(
     extent: f64,
     arc: f64,
 ) -> Result<(Frame, f64), Refusal> {
-    let here = Place { position: frame.position, arc };
+    let here = Place::of_curve(frame.position, arc);
     let mut step = step;
     loop {
         let ahead = frame.position + frame.tangent * step;
@@ -127,7 +127,7 @@ fn regular<P: Path<f64> + ?Sized>(path: &mut P, nodes: &[Node]) -> Result<(), Re
         let (least, position) = at(0.5 * (low + high));
         if least < IRREGULAR * largest {
             let arc = before.arc + length(&(position - before.position()));
-            return Err(Reason::Irregular.at(Place { position, arc }));
+            return Err(Reason::Irregular.at(Place::of_curve(position, arc)));
         }
     }
     Ok(())
@@ -166,7 +166,7 @@ fn shifted(motion: &Motion, ahead: f64) -> Motion {
 }
 
 /// Length of an arc from its chord and turn: chord·(θ/2)/sin(θ/2), to fourth order in θ.
-fn arc_of(chord: f64, turn: f64) -> f64 {
+pub(super) fn arc_of(chord: f64, turn: f64) -> f64 {
     chord * (1.0 + turn * turn / 24.0)
 }
 
@@ -201,7 +201,7 @@ pub fn find<P: Path<f64> + ?Sized>(path: &mut P, hint: Vector3<f64>) -> Result<F
         (false, true) => Reason::Parallel,
         (false, false) => Reason::Undefined,
     };
-    Err(reason.at(Place { position: hint, arc: 0.0 }))
+    Err(reason.at(Place::of_curve(hint, 0.0)))
 }
 
 /// The i-th number of van der Corput's sequence in [0, 1): with bases 2, 3, 5 a Halton sequence.

@@ -235,7 +235,7 @@ fn lap_of<P: controller::Path<f64>>(
     use crate::study::check::{Place, Reason};
     let start = harmonics.point(0.0);
     path.search(&start);
-    let refused = || Reason::NotSmooth.at(Place { position: start, arc: 0.0 });
+    let refused = || Reason::NotSmooth.at(Place::of_curve(start, 0.0));
     let frame = Frame::on_curve(path, start, 1.0).ok_or_else(refused)?;
     Ok(walk(path, frame)?)
 }

@@ -1,6 +1,6 @@
 //! The same paths for the witness, by formulas that it differentiates itself.
 
-use super::{CurveSpec, PathSpec, SpeedSpec, YawSpec};
+use super::{CurveSpec, ProfiledSpec, SpeedSpec, YawSpec};
 use controller::{Harmonics, Vector3};
 use rig::{Parameters, Shape, parameter, run};
 use witness::jet::{Dual, Scalar, cross, dot, scale};
@@ -10,7 +10,7 @@ use witness::law::WitnessPath;
 /// time, one of space and one along the inputs are fewer than sixteen.
 const DOUBLINGS: usize = 4;
 
-impl WitnessPath for PathSpec {
+impl WitnessPath for ProfiledSpec {
     fn surfaces<S: Scalar>(&self, p: [S; 3]) -> [S; 2] {
         match &self.curve {
             CurveSpec::Numbers(parameters) => shaped(parameters, p),
@@ -117,7 +117,7 @@ fn unit<S: Scalar>(v: [S; 3]) -> [S; 3] {
     scale(v, S::constant(1.0) / dot(v, v).sqrt())
 }
 
-impl PathSpec {
+impl ProfiledSpec {
     /// A point on or near the curve, in N, m.
     pub(super) fn hint(&self) -> Vector3<f64> {
         match &self.curve {

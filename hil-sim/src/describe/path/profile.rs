@@ -1,12 +1,16 @@
 //! Speeds and yaws as described by a user.
 
 use controller::{
-    AlongTangent, ConstantSpeed, CurvatureLimited, FixedYaw, Formula as OfPosition, PointingAt, ScalarField,
+    AlongTangent, ConstantSpeed, CurvatureLimited, FixedYaw, Formula as OfPosition, PointingAt, Profiled, ScalarField,
 };
 use controller::{Analytic, OutOfRange, Real};
-use rig::{AnySpeed, AnyYaw};
+use rig::{AnyCurve, AnySpeed, AnyYaw};
 
+use super::{CurveSpec, HARMONICS, Surfaces};
 use crate::describe::formula::Formula;
+
+/// A curve with its profiles, as the law takes it.
+pub type ProfiledPath<T> = Profiled<AnyCurve<T, Surfaces, HARMONICS>, AnySpeed<T, Formula>, AnyYaw<T, Formula>>;
 
 /// v_d as described by a user, m/s along ρ.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +44,27 @@ pub enum YawSpec {
     },
 }
 
+/// A curve with its profiles.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProfiledSpec {
+    /// The curve.
+    pub curve: CurveSpec,
+    /// v_d.
+    pub speed: SpeedSpec,
+    /// ψ_d.
+    pub yaw: YawSpec,
+}
+
+impl ProfiledSpec {
+    /// The path as the law takes it.
+    ///
+    /// # Errors
+    /// [`OutOfRange`] if rounding to `T` takes a parameter out of range.
+    pub fn build<T: Real>(&self) -> Result<ProfiledPath<T>, OutOfRange<T>> {
+        Ok(Profiled { curve: self.curve.build()?, speed: self.speed.build()?, yaw: self.yaw.build()? })
+    }
+}
+
 impl<T: Real> ScalarField<T> for Formula {
     fn at<A: Analytic<T>>(&self, p: [A; 3]) -> A {
         self.evaluate_analytic(p)
@@ -47,7 +72,7 @@ impl<T: Real> ScalarField<T> for Formula {
 }
 
 impl SpeedSpec {
-    pub(super) fn build<T: Real>(&self) -> Result<AnySpeed<T, Formula>, OutOfRange<T>> {
+    fn build<T: Real>(&self) -> Result<AnySpeed<T, Formula>, OutOfRange<T>> {
         Ok(match self {
             Self::Constant(speed) => AnySpeed::Constant(ConstantSpeed::new(T::lit(*speed))?),
             Self::Formula(formula) => AnySpeed::Formula(OfPosition(formula.clone())),
@@ -59,7 +84,7 @@ impl SpeedSpec {
 }
 
 impl YawSpec {
-    pub(super) fn build<T: Real>(&self) -> Result<AnyYaw<T, Formula>, OutOfRange<T>> {
+    fn build<T: Real>(&self) -> Result<AnyYaw<T, Formula>, OutOfRange<T>> {
         Ok(match self {
             Self::Fixed(yaw) => AnyYaw::Fixed(FixedYaw::new(T::lit(*yaw))?),
             Self::Tangent => AnyYaw::Tangent(AlongTangent),

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, IgnoredAny};
 use std::collections::BTreeMap;
 
-use super::{CurveSpec, HARMONICS, PathSpec, SpeedSpec, Surfaces, YawSpec};
+use super::{CurveSpec, HARMONICS, PathKind, PathSpec, ProfiledSpec, SpeedSpec, Surfaces, YawSpec, route};
 use crate::describe::formula::{Constants, Formula};
 use crate::describe::input::{Invalid, all_within, join, read, within};
 
@@ -15,10 +15,14 @@ pub(crate) const SPEED_LIMIT: f64 = controller::ranges::SPEED.max;
 /// Largest yaw given as a number, rad: any representative of an angle, but no mistake.
 const YAW_LIMIT: f64 = controller::ranges::YAW.max;
 
-/// The fields that every kind of path has.
+#[derive(Deserialize)]
+struct Kind {
+    kind: String,
+}
+
+/// The fields that every curve has.
 #[derive(Deserialize)]
 struct Common {
-    kind: String,
     speed: Option<SpeedField>,
     yaw: Option<YawField>,
     #[serde(default)]
@@ -48,11 +52,12 @@ enum YawField {
     PointingAt(LineFields),
 }
 
+/// p1 and p2 of the vertical line that the nose points to.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct LineFields {
-    x: f64,
-    y: f64,
+pub(super) struct LineFields {
+    pub x: f64,
+    pub y: f64,
 }
 
 /// The own fields of a kind that is not one of the controller's; the common ones are read apart.
@@ -82,7 +87,18 @@ own_fields!(FourierFields { center: [f64; 3], cos: Vec<[f64; 3]>, sin: Vec<[f64;
 /// [`Invalid`] for an unknown kind, an unknown or missing field, one out of range, or text that is
 /// not a formula.
 pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Result<PathSpec, Invalid> {
-    let Common { kind, speed, yaw, constants } = read(at, value.clone())?;
+    let Kind { kind } = read(at, value.clone())?;
+    let kind = if kind == "route" {
+        PathKind::Route(route::parse(at, value)?)
+    } else {
+        PathKind::Profiled(profiled(at, &kind, value)?)
+    };
+    PathSpec::new(kind).map_err(|error| Invalid::out_of_range(at, error))
+}
+
+/// Reads a curve of this `kind` with its profiles.
+fn profiled<'de, V: Deserializer<'de> + Clone>(at: &str, kind: &str, value: V) -> Result<ProfiledSpec, Invalid> {
+    let Common { speed, yaw, constants } = read(at, value.clone())?;
     for (name, constant) in &constants {
         within(&join(at, &format!("constants.{name}")), *constant, f64::MIN..=f64::MAX)?;
     }
@@ -91,7 +107,7 @@ pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Resu
     };
     let mut speed = speed.map(|speed| speed_of(at, speed, parse)).transpose()?;
     let mut yaw = yaw.map(|yaw| yaw_of(at, yaw, parse)).transpose()?;
-    let curve = match (kind.as_str(), Shape::named(&kind)) {
+    let curve = match (kind, Shape::named(kind)) {
         ("implicit", _) => {
             let ImplicitFields { h1, h2, .. } = read(at, value)?;
             CurveSpec::Implicit(Surfaces { h1: parse("h1", &h1)?, h2: parse("h2", &h2)? })
@@ -118,21 +134,27 @@ pub fn parse_path<'de, V: Deserializer<'de> + Clone>(at: &str, value: V) -> Resu
         }
         (other, None) => {
             let kinds = Shape::NAMES.join(", ");
-            let message = format_args!("no path of kind \"{other}\": {kinds}, implicit");
+            let message = format_args!("no path of kind \"{other}\": {kinds}, implicit, route");
             return Err(Invalid::new(join(at, "kind"), message));
         }
     };
     let speed = speed.ok_or_else(|| Invalid::new(join(at, "speed"), "missing"))?;
     let yaw = yaw.unwrap_or(YawSpec::Fixed(0.0));
-    PathSpec::new(curve, speed, yaw).map_err(|error| {
-        // A curve of numbers names a parameter: what the description calls it is said.
-        let fields = Shape::named(&kind).map_or(&[][..], Shape::fields);
-        let table = Parameters::<f64>::default();
-        let name = |parameter: Parameter| table.at(parameter.index()).map(|(entry, _)| entry.name.as_str());
-        let is_meant = |field: &&Field| field.parameters().any(|parameter| name(parameter) == Some(error.field));
-        let field = fields.iter().find(is_meant).map_or(error.field, |field| field.name);
-        Invalid::out_of_range(at, OutOfRange { field, ..error })
-    })
+    let spec = ProfiledSpec { curve, speed, yaw };
+    match spec.build::<f64>() {
+        Ok(_) => Ok(spec),
+        Err(error) => Err(named(at, kind, error)),
+    }
+}
+
+/// What a curve refused. One of numbers names a parameter: what the description calls it is said.
+fn named(at: &str, kind: &str, error: OutOfRange<f64>) -> Invalid {
+    let fields = Shape::named(kind).map_or(&[][..], Shape::fields);
+    let table = Parameters::<f64>::default();
+    let name = |parameter: Parameter| table.at(parameter.index()).map(|(entry, _)| entry.name.as_str());
+    let is_meant = |field: &&Field| field.parameters().any(|parameter| name(parameter) == Some(error.field));
+    let field = fields.iter().find(is_meant).map_or(error.field, |field| field.name);
+    Invalid::out_of_range(at, OutOfRange { field, ..error })
 }
 
 /// What is given for a field of a curve.
