@@ -1,0 +1,130 @@
+"""Scenarios, flights, comparisons, campaigns."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import slung
+
+
+def test_the_papers_figure_is_flown_as_it_is_printed():
+    flight = slung.run(slung.Scenario("fig3a"))
+    assert flight.failure is None
+    # hil-sim/scenarios/reference.toml: a period of 1 ms, and what single precision loses.
+    assert flight.results["settle_s"] == pytest.approx(6.637, abs=2e-3)
+    assert flight.results["effort_n_s"] == pytest.approx(7.405, abs=2e-3)
+    log = flight.log
+    assert log["t_s"][-1] == pytest.approx(10.0) and len(log["p1"]) == len(log["t_s"]) == len(log["mode"])
+    assert np.hypot(log["p1"], log["p2"])[-1] == pytest.approx(5.0, abs=1e-3)
+    assert flight.quantities["thrust"][0] == "N" and set(flight.quantities) == set(log)
+
+
+def test_every_built_in_scenario_can_be_had():
+    assert {"fig2a", "fig3b", "knot", "building"} <= set(slung.Scenario.names())
+    for name in slung.Scenario.names():
+        assert slung.Scenario(name).name == name
+
+
+def test_scenarios_come_from_files_and_mappings(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text('title = "Mine"\nduration_s = 2.0\n[vehicle]\npayload_mass = 0.7\n')
+    mine = slung.Scenario(file)
+    assert (mine.name, mine.title, mine.duration_s) == ("mine", "Mine", 2.0)
+    changed = mine.replace(vehicle={"uav_mass": np.float64(3.0)}, initial={"position": np.array([0.0, 6.0, -10.0])})
+    assert changed.keys["vehicle"] == {"payload_mass": 0.7, "uav_mass": 3.0}
+    assert slung.run(slung.Scenario(changed.keys)).log["p2"][0] == 6.0
+    assert slung.Scenario(path=slung.Path(kind="circle", radius=3.0, p3=-9.0, speed=1.0)).distance((3, 0, -9)) == 0.0
+
+
+def test_what_is_wrong_in_a_scenario_is_named(tmp_path):
+    with pytest.raises(slung.Refused, match="duration_s: -1 is outside 0.01 to 100000") as refused:
+        slung.Scenario(duration_s=-1)
+    assert refused.value.field == "duration_s"
+    with pytest.raises(slung.Refused, match="colour"):
+        slung.Scenario(vehicle={"colour": 1.0})
+    with pytest.raises(TypeError, match="vehicle: a object is no value"):
+        slung.Scenario(vehicle=object())
+    with pytest.raises(FileNotFoundError, match="nowhere.toml"):
+        slung.Scenario("nowhere.toml")
+    file = tmp_path / "wrong.toml"
+    file.write_text("title = 'x'\nduration_s = 'long'\n")
+    with pytest.raises(slung.Refused, match="wrong.toml:2: duration_s"):
+        slung.Scenario(file)
+
+
+def test_a_worlds_flight_is_a_function_of_its_seed():
+    scenario = slung.Scenario(sensors={"position": {"noise": 0.02}}, controller={"rate_hz": 500.0})
+
+    def positions(seed, run=0):
+        world = slung.World(scenario, seed=seed, run=run)
+        seen = []
+        for _ in range(5):
+            seen.append(world.read().position)
+            world.advance(29.43)
+        return np.array(seen)
+
+    np.testing.assert_array_equal(positions(3), positions(3))
+    assert (positions(3) != positions(4)).any() and (positions(3) != positions(3, 1)).any()
+    world = slung.World(scenario)
+    with pytest.raises(slung.Refused, match="thrust = NaN is outside"):
+        world.advance(float("nan"))
+
+
+def test_a_world_has_ground_and_a_cable_that_can_be_slack():
+    scenario = slung.Scenario(
+        initial={"position": [0.5, 0.0, 0.0], "uav_position": [0.0, 0.0, 0.0], "standing": True},
+        ground={"p3": 0.0},
+        controller={"rate_hz": 500.0},
+    )
+    world = slung.World(scenario, thrust=0.0)
+    assert world.on_ground == (True, True) and world.pull == 0.0
+    world.advance(35.0, periods=1000)
+    assert world.on_ground == (False, False) and world.pull > 1.0
+
+
+def test_comparisons_are_rows_by_columns():
+    rows = slung.compare(2, cases=["nominal", "force-1N"])
+    assert list(rows["case"]) == ["nominal"] * 4 + ["force-1N"] * 4
+    assert rows["runs"].tolist() == [2] * 8
+    observer = rows["law"] == "observer"
+    assert (rows["good"][observer] == 2).all() and rows["median_dc_m"][observer].max() < 0.01
+    with pytest.raises(slung.Refused, match="hail"):
+        slung.compare(1, cases=["hail"])
+
+
+def test_campaigns_are_the_same_on_any_number_of_threads():
+    campaign = slung.Campaign()
+    one, two = campaign.run(3, seed=5, jobs=1), campaign.run(3, seed=5, jobs=2)
+    assert one.keys() == two.keys() and list(one["run"]) == [0, 1, 2]
+    for name in one:
+        np.testing.assert_array_equal(one[name], two[name])
+    row, log = campaign.replay(1, seed=5)
+    assert row["dc_max_m"] == one["dc_max_m"][1]
+    np.testing.assert_allclose([log["p1"][0], log["p2"][0]], campaign.start(1, seed=5).position[:2], rtol=1e-6)
+    with pytest.raises(slung.Refused, match="path.kind: no path"):
+        slung.Campaign({"scenario": {"path": {"kind": "helix", "speed": 1.0}}})
+
+
+def test_others_run_while_a_flight_does():
+    """A thread that counts goes on counting: a flight holds no lock."""
+    scenario = slung.Scenario("fig3a", duration_s=200.0)
+    counted, flying = [], threading.Event()
+
+    def count():
+        while flying.is_set():
+            counted.append(time.perf_counter())
+            time.sleep(0.001)
+
+    flying.set()
+    thread = threading.Thread(target=count)
+    thread.start()
+    begun = time.perf_counter()
+    slung.run(scenario)
+    ended = time.perf_counter()
+    flying.clear()
+    thread.join()
+    during = [moment for moment in counted if begun < moment < ended]
+    # Held for the whole flight, none or one would be left.
+    assert len(during) >= 5, f"{len(during)} in {ended - begun} s"
