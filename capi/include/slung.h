@@ -22,9 +22,9 @@
  * autopilot or a motion-capture system in their own axes; do not convert by hand, compilers fuse multiplications.
  * Units are SI and stand in the names.
  *
- * Memory. Instances live in the caller's memory, need no destruction, and hold no pointers: they may be copied with memcpy. The
- * library allocates nothing, has no globals, and uses no libm. A step takes a bounded time and at most 2 KiB of stack;
- * slung_create takes at most 12 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
+ * Memory. Instances live in the caller's memory, need no destruction, and may be copied with memcpy: they hold no pointers, but
+ * for those of a route to its table. The library allocates nothing, has no globals, and uses no libm. A step takes a bounded time
+ * and at most 2.5 KiB of stack, a circle's 2 KiB; slung_create takes at most 16 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
  * as for any C function that uses floats.
  *
  * Errors. Every call returns SLUNG_OK or a negative status, and changes nothing when it refuses. slung_step is total: whatever
@@ -56,7 +56,8 @@ enum slung_status {
     SLUNG_NOT_WHOLE = -8,
     SLUNG_UNSTABLE_GAINS = -9,
     SLUNG_BAD_STATE = -10,
-    SLUNG_UNKNOWN_ENUMERATOR = -11
+    SLUNG_UNKNOWN_ENUMERATOR = -11,
+    SLUNG_NO_ROUTE = -12
 };
 
 /* What the pilot wants, as uint32_t. */
@@ -105,6 +106,15 @@ enum slung_fault {
     SLUNG_FAULT_MARGIN = 0x200    /* plus an enum slung_warning: that margin is beyond its limit */
 };
 
+/* What an estimate of the rod is worth, as uint32_t. */
+enum slung_validity {
+    SLUNG_VALID = 0,        /* as good as its deviation says */
+    SLUNG_CONVERGING = 1,   /* not known yet to 0.15 rad */
+    SLUNG_INCONSISTENT = 2, /* thrust and rod have disagreed for a second: something is not as told */
+    SLUNG_BLIND = 3,        /* inputs have been missing for more than 0.1 s */
+    SLUNG_SLACK_CABLE = 4   /* there is no rod */
+};
+
 /* Axes of a world and a body, as uint32_t; all right-handed. */
 enum slung_frames {
     SLUNG_NED_FRD = 0, /* north, east, down; forward, right, down: PX4, ArduPilot */
@@ -121,6 +131,49 @@ typedef struct slung_parameters {
 typedef struct slung_controller {
     uint64_t storage[512];
 } slung_controller;
+
+/* A route; slung_route_build makes it. It points to the knots and runs that it was given. */
+typedef struct slung_route {
+    uint64_t storage[8];
+} slung_route;
+
+/* An estimator of the load's state; slung_estimator_create makes it. */
+typedef struct slung_estimator {
+    uint64_t storage[256];
+} slung_estimator;
+
+/* Room for a control point of a route, and for the part of one between two stops. */
+typedef struct slung_knot {
+    float numbers[15];
+} slung_knot;
+typedef struct slung_run {
+    size_t words[2];
+    uint32_t more[2];
+} slung_run;
+
+/* A point of a route, with how it is flown from there on. */
+typedef struct slung_waypoint {
+    float point_ned_m[3];
+    float corner_m;  /* where a corner's blend begins and ends, 0.02 to 1000; 0: the curve passes smoothly through the point */
+    float speed_m_s; /* of the leg that begins here, 0.05 to 100 */
+    float yaw_rad;   /* not a number: along the route */
+    float stop_s;    /* how long the payload rests here; negative: it passes */
+} slung_waypoint;
+
+/* How a route is sped up and slowed down. */
+typedef struct slung_pace {
+    float acceleration_m_s2; /* along the route and across it, 0.05 to 20 */
+    float stop_rate_1_s;     /* speed over distance near a stop, 0.05 to 5 */
+    float rise_s;            /* in which the acceleration may rise, 0.05 to 10 */
+} slung_pace;
+
+/* Where things sit on the UAV, from its centre of mass, and drag: of speed (N.s/m) and of its square (N.s2/m2). */
+typedef struct slung_mounting {
+    float hook_frd_m[3];
+    float imu_frd_m[3];
+    float uav_drag[2];
+    float payload_drag[2];
+} slung_mounting;
 
 /* Why a call was refused. Set struct_size to sizeof(slung_error) before the call. */
 typedef struct slung_error {
@@ -160,6 +213,17 @@ typedef struct slung_state {
     float attitude_frd_to_ned[9]; /* row by row; its columns are b1, b2, b3 in N */
     float body_rate_frd_rad_s[3];
 } slung_state;
+
+/* What an estimator has found. Set struct_size to sizeof(slung_estimate) before the call. */
+typedef struct slung_estimate {
+    uint32_t struct_size;
+    uint32_t validity; /* enum slung_validity */
+    uint32_t taut;     /* 1 while the cable pulls */
+    float tension_n;
+    float rod_deviation_rad; /* standard deviation of the rod's direction, both axes together */
+    float rate_deviation_1_s;
+    slung_state state; /* for slung_step */
+} slung_estimate;
 
 /* Thrust along -b3, and torque. */
 typedef struct slung_wrench {
@@ -221,6 +285,10 @@ int32_t slung_parameters_get(const slung_parameters *parameters, const char *nam
 
 /* Makes a controller, rotors off. bytes is sizeof(slung_controller); error may be NULL. */
 int32_t slung_create(slung_controller *controller, size_t bytes, const slung_parameters *parameters, slung_error *error);
+/* The same on a route, or on the parameters' own path where it is NULL. The route's knots and runs must stay where they are as
+ * long as the controller is used; the route itself need not. */
+int32_t slung_create_on(slung_controller *controller, size_t bytes, const slung_parameters *parameters, const slung_route *route,
+                        slung_error *error);
 /* Takes over a flying vehicle to which applied has been applied until now, without a bump: mode hold. */
 int32_t slung_take_over(slung_controller *controller, const slung_state *state, const slung_wrench *applied);
 /* Starts on the path from a stated zeta (0 is hover): mode follow, without an approach. */
@@ -228,6 +296,10 @@ int32_t slung_start(slung_controller *controller, const slung_state *state, cons
 /* One control period (CTL_PERIOD). state may be NULL: no state this period. request is an enum slung_request; an unknown one is
  * refused, and the last one stands. The output is written either way. */
 int32_t slung_step(slung_controller *controller, const slung_state *state, uint32_t request, slung_output *output);
+/* The same with what the UAV's own navigation knows, in the axes of frames, and its accelerometer's specific force in its body axes;
+ * any of them may be NULL. Hold and landing then fly the UAV whatever the cable does, and from idle a vehicle takes off. */
+int32_t slung_step_measured(slung_controller *controller, const slung_state *state, uint32_t frames, const slung_uav *uav,
+                            const float specific_force_body_m_s2[3], uint32_t request, slung_output *output);
 /* Turns the output's body vectors from forward-right-down into the body axes of frames, in place. */
 int32_t slung_output_in(uint32_t frames, slung_output *output);
 /* Where the last step's command came from; state is the one it was made on. */
@@ -240,6 +312,32 @@ int32_t slung_state_from_payload(uint32_t frames, const slung_uav *uav, const fl
  * payload (a unit vector in the world), and that direction's rate. */
 int32_t slung_state_from_cable(uint32_t frames, const slung_uav *uav, const float hook_body_m[3], float cable_length_m,
                                const float cable_world[3], const float cable_rate_world_1_s[3], slung_state *state);
+
+/* Makes the route through waypoints: open, from rest to rest, or closed. bytes is sizeof(slung_route). pace may be NULL: 1 m/s2,
+ * 0.5/s, 0.4 s. knots and runs are lent for as long as the route flies: some 10 knots for each waypoint with a corner or stop and one
+ * for each smooth one, 20 more for each run, and as many again as there are waypoints, which are read into them; a run for each stop,
+ * and one. error (which may be NULL) names the number that is out of its range; with SLUNG_NO_ROUTE its value is the waypoint, from
+ * 0, whose leg is shorter than 5 cm ("leg") or where the route turns by more than 150 degrees without a stop ("turn"); with
+ * SLUNG_TOO_SMALL it is knot_count or run_count. */
+int32_t slung_route_build(slung_route *route, size_t bytes, const slung_waypoint *waypoints, uint32_t waypoint_count,
+                          uint32_t closed, const slung_pace *pace, slung_knot *knots, uint32_t knot_count, slung_run *runs,
+                          uint32_t run_count, slung_error *error);
+/* At the last stop: the way back and forth again (back = 1), or the first run again (0), so many times; 0 times is to stay. */
+int32_t slung_route_repeat(slung_route *route, uint32_t times, uint32_t back);
+size_t slung_route_bytes(void);
+
+/* Makes an estimator of the parameters' vehicle, stepped at their CTL_PERIOD (1 to 10 ms). mounting may be NULL: hook and
+ * accelerometer at the centre of mass, no drag. */
+int32_t slung_estimator_create(slung_estimator *estimator, size_t bytes, const slung_parameters *parameters,
+                               const slung_mounting *mounting, slung_error *error);
+/* One period: the UAV at its end by its own navigation, the mean specific force in it less its bias (-g along the body's down axis at
+ * rest), and the mean thrust, not a number where it is not known. uav or specific force may be NULL: none this period. */
+int32_t slung_estimator_step(slung_estimator *estimator, uint32_t frames, const slung_uav *uav,
+                             const float specific_force_body_m_s2[3], float thrust_n, slung_estimate *estimate);
+/* The load as somebody saw it, with the deviation per axis and its age: not needed, but it helps. SLUNG_OUT_OF_RANGE: not used. */
+int32_t slung_estimator_observe(slung_estimator *estimator, uint32_t frames, const float payload_position_world_m[3],
+                                float deviation_m, float age_s);
+size_t slung_estimator_bytes(void);
 
 /* Texts; never NULL. */
 const char *slung_status_text(int32_t status);

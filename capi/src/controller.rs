@@ -2,25 +2,30 @@
 
 use core::mem::size_of;
 
-use controller::{Command, Refused, Request, State};
-use rig::Rig;
+use controller::{Command, Frames, Measured, Refused, Request, Route, State, Vector3};
+use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError};
 
-use crate::frames::frames;
+use crate::frames::{frames, uav};
 use crate::parameters::Stored;
-use crate::pointer::{Sized32, exclusive, shared, write_sized};
+use crate::pointer::{Sized32, exclusive, optional, shared, write_sized};
+use crate::route::{LentTable, StoredRoute};
 use crate::status::{Status, code, setup, tell};
 use crate::text::{fault_code, margin_code, mode_code};
-use crate::types::{SlungError, SlungOutput, SlungState, SlungTelemetry, SlungWrench};
+use crate::types::{SlungError, SlungOutput, SlungState, SlungTelemetry, SlungUav, SlungWrench};
 
 /// Written by [`slung_create`]; anything else is memory in which no controller is.
 const CREATED: u32 = 0x51A6_C081;
+
+/// Any of the parameters' paths, or a route in lent memory.
+type FlownPath = AnyPath<f32, NoFormula, NoFormula, HARMONICS, LentTable>;
+type Controller = Rig<f32, FlownPath>;
 
 /// `slung_controller`: the caller's memory holds this.
 #[repr(C, align(8))]
 pub struct Instance {
     created: u32,
     request: Request,
-    rig: Rig<f32>,
+    rig: Controller,
 }
 
 /// Bytes in the header's `slung_controller`; a test compares.
@@ -28,7 +33,7 @@ pub const BYTES: usize = 4096;
 const _: () = assert!(size_of::<Instance>() <= BYTES);
 
 impl Instance {
-    fn rig(&mut self) -> Result<&mut Rig<f32>, Status> {
+    fn rig(&mut self) -> Result<&mut Controller, Status> {
         if self.created == CREATED { Ok(&mut self.rig) } else { Err(Status::NotCreated) }
     }
 }
@@ -52,6 +57,23 @@ pub unsafe extern "C" fn slung_create(
     parameters: *const Stored,
     error: *mut SlungError,
 ) -> i32 {
+    // SAFETY: the caller's promise.
+    unsafe { slung_create_on(controller, bytes, parameters, core::ptr::null(), error) }
+}
+
+/// The same on a route, or on the parameters' own path where it is null.
+///
+/// # Safety
+/// As [`slung_create`]; the route's knots and runs stay where they are as long as the controller is
+/// used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_create_on(
+    controller: *mut Instance,
+    bytes: usize,
+    parameters: *const Stored,
+    route: *const StoredRoute,
+    error: *mut SlungError,
+) -> i32 {
     let create = || {
         if controller.is_null() {
             return Err(Status::NullPointer);
@@ -64,11 +86,19 @@ pub unsafe extern "C" fn slung_create(
         }
         // SAFETY: the caller's promise.
         let parameters = unsafe { shared(parameters)? }.values()?;
-        let rig = Rig::new(parameters).map_err(|refused| {
+        let refused = |refused: SetupError<f32>| {
             let (status, field, numbers) = setup(&refused, parameters);
             // SAFETY: the caller's promise.
             unsafe { tell(error, status, field, numbers) }
-        })?;
+        };
+        let path = if route.is_null() {
+            rig::path(parameters).map_err(|error| refused(error.into()))?
+        } else {
+            // SAFETY: the caller's promise.
+            let (table, end) = unsafe { shared(route)? }.parts()?;
+            AnyPath::Route(Route::new(table).map_err(|error| refused(error.into()))?.with_end(end))
+        };
+        let rig = Rig::on(path, parameters).map_err(refused)?;
         // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no
         // drop.
         unsafe { controller.write(Instance { created: CREATED, request: Request::Off, rig }) };
@@ -153,32 +183,68 @@ pub unsafe extern "C" fn slung_step(
     wanted: u32,
     output: *mut SlungOutput,
 ) -> i32 {
+    let (uav, force) = (core::ptr::null(), core::ptr::null());
+    // SAFETY: the caller's promise.
+    unsafe { slung_step_measured(controller, state, 0, uav, force, wanted, output) }
+}
+
+/// The same with what the UAV knows of itself, in the axes of `slung_frames`; any of it may be null.
+///
+/// # Safety
+/// As [`slung_take_over`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_step_measured(
+    controller: *mut Instance,
+    state: *const SlungState,
+    number: u32,
+    reported: *const SlungUav,
+    specific_force_body_m_s2: *const [f32; 3],
+    wanted: u32,
+    output: *mut SlungOutput,
+) -> i32 {
     let step = || {
         // SAFETY: the caller's promise.
         let instance = unsafe { exclusive(controller)? };
         instance.rig()?;
         let known = request(wanted).map(|wanted| instance.request = wanted);
-        let state = if state.is_null() {
-            None
-        } else {
-            // SAFETY: the caller's promise.
-            Some(State::from(unsafe { shared(state)? }))
-        };
-        instance.rig.step(state.as_ref(), instance.request, 0.0);
-        let answer = answer(&instance.rig, state.as_ref());
         // SAFETY: the caller's promise.
-        unsafe { write_sized(output, &answer, SlungOutput::SIZE)? };
+        let state = unsafe { optional(state)? }.map(State::from);
+        let frames = frames(number)?;
+        // SAFETY: the caller's promise.
+        let (uav, force) = unsafe { (optional(reported)?, optional(specific_force_body_m_s2)?) };
+        fly(instance, state.as_ref(), frames, uav, force);
+        // SAFETY: the caller's promise.
+        unsafe { answer(&instance.rig, state.as_ref(), output)? };
         known
     };
     code(step())
 }
 
-fn answer(rig: &Rig<f32>, state: Option<&State<f32>>) -> SlungOutput {
+/// The step itself. Out of line, and the answer too: neither's stack lies under the other's.
+#[inline(never)]
+fn fly(
+    instance: &mut Instance,
+    state: Option<&State<f32>>,
+    frames: Frames,
+    reported: Option<&SlungUav>,
+    force: Option<&[f32; 3]>,
+) {
+    let uav = reported.map(|reported| uav(frames, reported));
+    let specific_force = force.map(|force| frames.body(&Vector3::from(*force)));
+    instance.rig.step(Measured { state, uav: uav.as_ref(), specific_force }, instance.request, 0.0);
+}
+
+/// Writes the last step's answer.
+///
+/// # Safety
+/// As [`write_sized`].
+#[inline(never)]
+unsafe fn answer(rig: &Controller, state: Option<&State<f32>>, target: *mut SlungOutput) -> Result<(), Status> {
     let output = rig.output();
     let Command { thrust, torque } = output.command;
     let setpoint = rig.rate_setpoint(state);
     let [thrust_normalized, roll, pitch, yaw] = rig.actuators().shares(&output.command);
-    SlungOutput {
+    let told = SlungOutput {
         struct_size: SlungOutput::SIZE,
         mode: mode_code(output.mode),
         fault: output.fault.map_or(0, fault_code),
@@ -191,7 +257,9 @@ fn answer(rig: &Rig<f32>, state: Option<&State<f32>>) -> SlungOutput {
         thrust_normalized,
         torque_normalized_frd: [roll, pitch, yaw],
         rotor: rig.duties(),
-    }
+    };
+    // SAFETY: the caller's promise.
+    unsafe { write_sized(target, &told, SlungOutput::SIZE) }
 }
 
 /// Turns an output's vectors, which are in forward-right-down axes, into the body axes of

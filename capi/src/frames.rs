@@ -38,7 +38,7 @@ fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
 }
 
 /// The UAV in the library's own axes.
-fn uav(frames: Frames, reported: &SlungUav) -> Uav<f32> {
+pub fn uav(frames: Frames, reported: &SlungUav) -> Uav<f32> {
     Uav {
         position: frames.inertial(&reported.position_world_m.into()),
         velocity: frames.inertial(&reported.velocity_world_m_s.into()),

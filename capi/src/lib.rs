@@ -6,22 +6,29 @@
 #![no_std]
 
 mod controller;
+mod estimator;
 mod frames;
 mod parameters;
 mod pointer;
+mod route;
 mod status;
 mod text;
 pub mod types;
 
 pub use crate::controller::{
-    BYTES as CONTROLLER_BYTES, slung_controller_bytes, slung_create, slung_output_in, slung_start, slung_step,
-    slung_take_over, slung_telemetry_of,
+    BYTES as CONTROLLER_BYTES, slung_controller_bytes, slung_create, slung_create_on, slung_output_in, slung_start,
+    slung_step, slung_step_measured, slung_take_over, slung_telemetry_of,
+};
+pub use crate::estimator::{
+    BYTES as ESTIMATOR_BYTES, slung_estimator_bytes, slung_estimator_create, slung_estimator_observe,
+    slung_estimator_step,
 };
 pub use crate::frames::{slung_state_from_cable, slung_state_from_payload};
 pub use crate::parameters::{
     BYTES as PARAMETERS_BYTES, slung_parameter_count, slung_parameter_info, slung_parameters_bytes,
     slung_parameters_default, slung_parameters_get, slung_parameters_set,
 };
+pub use crate::route::{BYTES as ROUTE_BYTES, slung_route_build, slung_route_bytes, slung_route_repeat};
 pub use crate::status::Status;
 pub use crate::text::{slung_fault_text, slung_mode_text, slung_status_text, slung_warning_text};
 

@@ -22,6 +22,21 @@ pub unsafe fn shared<'a, T>(pointer: *const T) -> Result<&'a T, Status> {
     Ok(unsafe { &*pointer })
 }
 
+/// What `pointer` points to, if it is not null.
+///
+/// # Errors
+/// [`Status::Misaligned`].
+///
+/// # Safety
+/// As [`shared`].
+pub unsafe fn optional<'a, T>(pointer: *const T) -> Result<Option<&'a T>, Status> {
+    if pointer.is_null() {
+        return Ok(None);
+    }
+    // SAFETY: the caller's promise.
+    unsafe { shared(pointer) }.map(Some)
+}
+
 /// What `pointer` points to, to be written to.
 ///
 /// # Errors

@@ -34,6 +34,8 @@ pub enum Status {
     BadState = -10,
     /// An enumerator has none of its values.
     UnknownEnumerator = -11,
+    /// Waypoints make no route: a leg is too short, or a turn too sharp.
+    NoRoute = -12,
 }
 
 /// `Ok` as zero.

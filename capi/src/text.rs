@@ -77,6 +77,7 @@ pub extern "C" fn slung_status_text(status: i32) -> *const c_char {
         -9 => c"the gains make no stable loop",
         -10 => c"the state is not finite, or outside the range that the law is trusted with",
         -11 => c"an enumerator has none of its values",
+        -12 => c"the waypoints make no route: a leg is too short, or a turn too sharp",
         _ => c"unknown status",
     };
     text.as_ptr()

@@ -166,3 +166,68 @@ pub struct SlungTelemetry {
 
 // SAFETY: as above.
 unsafe impl Sized32 for SlungTelemetry {}
+
+/// A point of a route: `slung_waypoint`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungWaypoint {
+    /// In N, m.
+    pub point_ned_m: [f32; 3],
+    /// Where a corner's blend begins, m; 0: the curve passes smoothly through the point.
+    pub corner_m: f32,
+    /// m/s.
+    pub speed_m_s: f32,
+    /// Not a number: along the route.
+    pub yaw_rad: f32,
+    /// How long it rests here, s; negative: it passes.
+    pub stop_s: f32,
+}
+
+/// How a route is sped up and slowed down: `slung_pace`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungPace {
+    /// Along the route and across it, m/s².
+    pub acceleration_m_s2: f32,
+    /// Speed over distance near a stop, 1/s.
+    pub stop_rate_1_s: f32,
+    /// s.
+    pub rise_s: f32,
+}
+
+/// Where things sit, and drag: `slung_mounting`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungMounting {
+    /// From the centre of mass, m.
+    pub hook_frd_m: [f32; 3],
+    /// From the centre of mass, m.
+    pub imu_frd_m: [f32; 3],
+    /// Linear and quadratic.
+    pub uav_drag: [f32; 2],
+    /// Linear and quadratic.
+    pub payload_drag: [f32; 2],
+}
+
+/// What an estimator has found: `slung_estimate`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungEstimate {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// `slung_validity`.
+    pub validity: u32,
+    /// 1 while the cable pulls.
+    pub taut: u32,
+    /// N.
+    pub tension_n: f32,
+    /// Of the rod's direction, rad.
+    pub rod_deviation_rad: f32,
+    /// Of its rate, 1/s.
+    pub rate_deviation_1_s: f32,
+    /// The law's state.
+    pub state: SlungState,
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungEstimate {}

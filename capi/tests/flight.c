@@ -1,4 +1,4 @@
-/* Flies every kind of path and law for 500 steps and prints a digest of each byte that comes out: on a host and on a target
+/* Flies every kind of path and law, a route and the estimator for 500 steps each and prints a digest of each byte that comes out: on a host and on a target
  * the same. States are whole numbers times powers of two, so that no compiler's way with floats enters them. */
 #include "slung.h"
 
@@ -33,9 +33,23 @@ static void about(slung_uav *uav, float payload[3], float velocity[3]) {
     for (int i = 1; i < 4; ++i) uav->quaternion_body_to_world[i] = about_zero() * (1.0f / 64.0f);
 }
 
+/* What the header promises, bytes. */
+enum { STEP_STACK = 2560, CREATE_STACK = 16384 };
+
+/* A square with a rounded corner, a smooth point and a stop. */
+static int build(slung_route *route) {
+    static slung_knot knots[160];
+    static slung_run runs[4];
+    const slung_waypoint points[] = {{{5, 0, -10}, 2, 1, 0, -1}, {{5, 8, -10}, 2, 1.5f, 0, -1}, {{-3, 8, -11}, 2, 1, print_nan(), 1}, {{-3, 0, -10}, 2, 1, 0, -1}};
+    stack_paint();
+    const int32_t status = slung_route_build(route, sizeof *route, points, 4, 0, NULL, knots, 160, runs, 4, NULL);
+    return status == SLUNG_OK && stack_used() <= CREATE_STACK;
+}
+
 static int fly(const char *name, const char *const names[], const float values[], int count) {
     static slung_parameters parameters;
     static slung_controller controller;
+    static slung_route route;
     slung_uav uav;
     slung_state state;
     float payload[3], velocity[3];
@@ -46,7 +60,13 @@ static int fly(const char *name, const char *const names[], const float values[]
     slung_parameters_default(&parameters, sizeof parameters);
     for (int i = 0; i < count; ++i)
         if (slung_parameters_set(&parameters, names[i], values[i], NULL) != SLUNG_OK) return print_failure(name, names[i]);
-    if (slung_create(&controller, sizeof controller, &parameters, NULL) != SLUNG_OK) return print_failure(name, "create");
+    const int is_route = name[0] == 'r';
+    if (is_route && !build(&route)) return print_failure(name, "route");
+    stack_paint();
+    if (slung_create_on(&controller, sizeof controller, &parameters, is_route ? &route : NULL, NULL) != SLUNG_OK)
+        return print_failure(name, "create");
+    if (stack_used() > CREATE_STACK) return print_failure(name, "stack of create");
+    unsigned stack = 0;
     for (int step = 0; step < 500; ++step) {
         slung_output output = {0};
         slung_telemetry telemetry = {0};
@@ -58,13 +78,44 @@ static int fly(const char *name, const char *const names[], const float values[]
         if (step == 200) slung_start(&controller, &state, zeta);
         /* Every 50th step has no state, and every 71st one that is not a number. */
         if (step % 71 == 70) state.rod_ned[0] = print_nan();
-        slung_step(&controller, step % 50 == 49 ? NULL : &state, step < 450 ? SLUNG_FOLLOW : SLUNG_LAND, &output);
+        stack_paint();
+        slung_step_measured(&controller, step % 50 == 49 ? NULL : &state, SLUNG_NED_FRD, step % 3 ? &uav : NULL, NULL,
+                            step < 450 ? SLUNG_FOLLOW : SLUNG_LAND, &output);
+        if (stack_used() > stack) stack = stack_used();
         slung_telemetry_of(&controller, &state, &telemetry);
         take(&output, sizeof output);
         take(&telemetry, sizeof telemetry);
     }
     print_digest(name, digest);
-    return 0;
+    print_stack(name, stack);
+    return stack > STEP_STACK ? print_failure(name, "stack of a step") : 0;
+}
+
+static int estimate(void) {
+    static slung_parameters parameters;
+    static slung_estimator estimator;
+    const slung_mounting mounting = {{0, 0, 0.125f}, {0.0625f, 0, 0}, {0.25f, 0}, {0, 0.0078125f}};
+    unsigned stack = 0;
+    slung_uav uav;
+    float payload[3], velocity[3];
+    random_state = 1;
+    digest = 14695981039346656037u;
+    slung_parameters_default(&parameters, sizeof parameters);
+    if (slung_estimator_create(&estimator, sizeof estimator, &parameters, &mounting, NULL) != SLUNG_OK)
+        return print_failure("estimator", "create");
+    for (int step = 0; step < 500; ++step) {
+        slung_estimate found = {0};
+        float force[3] = {about_zero(), about_zero(), -9.8125f + about_zero()};
+        found.struct_size = sizeof found;
+        about(&uav, payload, velocity);
+        if (step % 7 == 6) slung_estimator_observe(&estimator, SLUNG_NED_FRD, payload, 0.125f, 0);
+        stack_paint();
+        slung_estimator_step(&estimator, SLUNG_NED_FRD, step % 50 == 49 ? NULL : &uav, force, 29.5f + about_zero(), &found);
+        if (stack_used() > stack) stack = stack_used();
+        take(&found, sizeof found);
+    }
+    print_digest("estimator", digest);
+    return stack > STEP_STACK ? print_failure("estimator", "stack of a step") : 0;
 }
 
 int flight(void) {
@@ -81,5 +132,6 @@ int flight(void) {
     for (unsigned i = 0; i < sizeof paths / sizeof *paths; ++i) failures += fly(paths[i].name, kind, paths[i].values, 4);
     failures += fly("tracking", law, tracking, 7);
     failures += fly("late", sampled, late, 4);
-    return failures;
+    failures += fly("route", NULL, NULL, 0);
+    return failures + estimate();
 }

@@ -9,6 +9,10 @@
 int main(void) {
     SIZE(slung_parameters);
     SIZE(slung_controller);
+    SIZE(slung_route);
+    SIZE(slung_estimator);
+    SIZE(slung_knot);
+    SIZE(slung_run);
     SIZE(slung_error);
     FIELD(slung_error, struct_size);
     FIELD(slung_error, status);
@@ -69,5 +73,28 @@ int main(void) {
     FIELD(slung_telemetry, uav_force_ned_n);
     FIELD(slung_telemetry, torque_frd_n_m);
     FIELD(slung_telemetry, implied_payload_mass_kg);
+    SIZE(slung_waypoint);
+    FIELD(slung_waypoint, point_ned_m);
+    FIELD(slung_waypoint, corner_m);
+    FIELD(slung_waypoint, speed_m_s);
+    FIELD(slung_waypoint, yaw_rad);
+    FIELD(slung_waypoint, stop_s);
+    SIZE(slung_pace);
+    FIELD(slung_pace, acceleration_m_s2);
+    FIELD(slung_pace, stop_rate_1_s);
+    FIELD(slung_pace, rise_s);
+    SIZE(slung_mounting);
+    FIELD(slung_mounting, hook_frd_m);
+    FIELD(slung_mounting, imu_frd_m);
+    FIELD(slung_mounting, uav_drag);
+    FIELD(slung_mounting, payload_drag);
+    SIZE(slung_estimate);
+    FIELD(slung_estimate, struct_size);
+    FIELD(slung_estimate, validity);
+    FIELD(slung_estimate, taut);
+    FIELD(slung_estimate, tension_n);
+    FIELD(slung_estimate, rod_deviation_rad);
+    FIELD(slung_estimate, rate_deviation_1_s);
+    FIELD(slung_estimate, state);
     return 0;
 }

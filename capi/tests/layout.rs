@@ -5,7 +5,10 @@ use std::fmt::Write as _;
 use std::mem::{offset_of, size_of};
 use std::process::Command;
 
-use capi::types::{SlungError, SlungOutput, SlungParameter, SlungState, SlungTelemetry, SlungUav, SlungWrench};
+use capi::types::{
+    SlungError, SlungEstimate, SlungMounting, SlungOutput, SlungPace, SlungParameter, SlungState, SlungTelemetry,
+    SlungUav, SlungWaypoint, SlungWrench,
+};
 
 /// What `layout.c` prints, by Rust.
 fn layout() -> String {
@@ -26,6 +29,10 @@ fn layout() -> String {
         "slung_wrench" SlungWrench { thrust_n torque_frd_n_m }
         "slung_output" SlungOutput { struct_size mode fault warning limited thrust_n torque_frd_n_m angular_acceleration_frd_rad_s2 body_rate_setpoint_frd_rad_s thrust_normalized torque_normalized_frd rotor }
         "slung_telemetry" SlungTelemetry { struct_size law_flew xi nu u_zeta_m_s6 zeta margin_rod margin_thrust_axis margin_lambda_m_s2 margin_kappa_1_s2 margin_path margin_reach payload_force_ned_n uav_force_ned_n torque_frd_n_m implied_payload_mass_kg }
+        "slung_waypoint" SlungWaypoint { point_ned_m corner_m speed_m_s yaw_rad stop_s }
+        "slung_pace" SlungPace { acceleration_m_s2 stop_rate_1_s rise_s }
+        "slung_mounting" SlungMounting { hook_frd_m imu_frd_m uav_drag payload_drag }
+        "slung_estimate" SlungEstimate { struct_size validity taut tension_n rod_deviation_rad rate_deviation_1_s state }
     }
     text
 }
@@ -45,13 +52,20 @@ fn a_c_compiler_lays_the_structures_out_as_the_library_does() {
         .unwrap_or_else(|error| panic!("{compiler}: {error}"));
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let printed = String::from_utf8(Command::new(&program).output().unwrap().stdout).unwrap();
-    // The instances' storage is the caller's: large enough, and a multiple of its alignment.
-    let (instances, structures): (Vec<_>, Vec<_>) = printed
-        .lines()
-        .partition(|line| line.starts_with("slung_parameters ") || line.starts_with("slung_controller "));
+    // Storage that is the caller's: large enough, or for knots and runs, just so large.
+    let lent =
+        ["slung_parameters ", "slung_controller ", "slung_route ", "slung_estimator ", "slung_knot ", "slung_run "];
+    let (instances, structures): (Vec<_>, Vec<_>) =
+        printed.lines().partition(|line| lent.iter().any(|name| line.starts_with(name)));
     let bytes = |line: &&str| line.rsplit(' ').next().unwrap().parse::<usize>().unwrap();
-    assert_eq!(instances.iter().map(bytes).collect::<Vec<_>>(), [capi::PARAMETERS_BYTES, capi::CONTROLLER_BYTES]);
+    let [knot, run] = [size_of::<controller::Knot<f32>>(), size_of::<controller::Run<f32>>()];
+    assert_eq!(
+        instances.iter().map(bytes).collect::<Vec<_>>(),
+        [capi::PARAMETERS_BYTES, capi::CONTROLLER_BYTES, capi::ROUTE_BYTES, capi::ESTIMATOR_BYTES, knot, run]
+    );
     assert!(capi::slung_parameters_bytes() <= capi::PARAMETERS_BYTES);
     assert!(capi::slung_controller_bytes() <= capi::CONTROLLER_BYTES);
+    assert!(capi::slung_route_bytes() <= capi::ROUTE_BYTES);
+    assert!(capi::slung_estimator_bytes() <= capi::ESTIMATOR_BYTES);
     assert_eq!(structures.join("\n") + "\n", layout());
 }

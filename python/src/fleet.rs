@@ -1,7 +1,7 @@
 //! Episodes for a learner: flights of a campaign whose commands come from outside, many at once.
 
 use controller::{Command, Path as _, Series, State, Vector3};
-use hil_sim::describe::course::Route;
+use hil_sim::describe::course::FlownPath;
 use hil_sim::describe::scenario::{Law, Scenario};
 use hil_sim::world::{Seed, World};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -32,7 +32,7 @@ pub struct Fleet {
 /// A flight under way.
 struct Episode {
     scenario: Scenario,
-    path: Route<f64>,
+    path: FlownPath<f64>,
     world: World,
     /// N, N·m: of a full action, thrust about hover's.
     hover: f64,

@@ -1,12 +1,12 @@
 //! The supervised controller.
 
 use controller::{Command, Fault, Frames, Margin, Measured, Mode, Request, Vector3};
-use hil_sim::describe::course::Route;
+use hil_sim::describe::course::FlownPath;
 use hil_sim::fly::fault::describe;
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rig::{AnyCurve, AnySpeed, AnyYaw, RateSetpoint, SetupError, Tabled};
+use rig::{RateSetpoint, SetupError, Tabled};
 
 use crate::convert::{frames, object, vector};
 use crate::error::{out_of_range, refused, unknown, whole};
@@ -21,8 +21,8 @@ pub struct Rig(Scalar);
 /// In the arithmetic of a board, or in that of a reference.
 #[expect(clippy::large_enum_variant, reason = "each is behind a Python object of its own")]
 enum Scalar {
-    Single(rig::Rig<f32, Route<f32>>),
-    Double(rig::Rig<f64, Route<f64>>),
+    Single(rig::Rig<f32, FlownPath<f32>>),
+    Double(rig::Rig<f64, FlownPath<f64>>),
 }
 
 macro_rules! either {
@@ -46,15 +46,11 @@ pub struct Output {
     frames: Frames,
 }
 
-fn make<T: Tabled>(parameters: &rig::Parameters<f64>, path: Option<&Path>) -> PyResult<rig::Rig<T, Route<T>>> {
+fn make<T: Tabled>(parameters: &rig::Parameters<f64>, path: Option<&Path>) -> PyResult<rig::Rig<T, FlownPath<T>>> {
     let parameters = parameters.cast();
     let path = match path {
         Some(path) => path.spec.build().map_err(out_of_range)?,
-        None => controller::Profiled {
-            curve: AnyCurve::new(&parameters).map_err(out_of_range)?,
-            speed: AnySpeed::new(&parameters).map_err(out_of_range)?,
-            yaw: AnyYaw::new(&parameters).map_err(out_of_range)?,
-        },
+        None => rig::path(&parameters).map_err(out_of_range)?,
     };
     rig::Rig::on(path, &parameters).map_err(|error| match error {
         SetupError::Range(error) => out_of_range(error),

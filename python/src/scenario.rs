@@ -1,6 +1,6 @@
 //! Scenarios, as files or as mappings with the same keys.
 
-use hil_sim::describe::scenario::{self as described, CURVES, FIGURES};
+use hil_sim::describe::scenario::{self as described, CURVES, FIGURES, ROUTES};
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
@@ -10,6 +10,11 @@ use toml::{Table, Value};
 
 use crate::convert::{object, table};
 use crate::error::{invalid, whole};
+
+/// Name and text of each scenario that comes with the simulator.
+fn built_in() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    [FIGURES, CURVES, ROUTES].into_iter().flatten()
+}
 
 /// A flight, described.
 #[pyclass(frozen, module = "slung")]
@@ -56,8 +61,8 @@ impl Scenario {
                 match std::fs::read_to_string(&file) {
                     Ok(text) => Self::parse(&file.to_string_lossy(), &text)?,
                     Err(error) => {
-                        let mut built_in = FIGURES.iter().chain(CURVES);
-                        let (name, text) = built_in.find(|(name, _)| file.as_os_str() == *name).ok_or_else(|| {
+                        let found = built_in().find(|(name, _)| file.as_os_str() == *name);
+                        let (name, text) = found.ok_or_else(|| {
                             let message = format!("{}: {error}", file.display());
                             match error.kind() {
                                 ErrorKind::NotFound => PyFileNotFoundError::new_err(message),
@@ -86,7 +91,7 @@ impl Scenario {
 
     #[staticmethod]
     fn names() -> Vec<&'static str> {
-        FIGURES.iter().chain(CURVES).map(|(name, _)| *name).collect()
+        built_in().map(|(name, _)| *name).collect()
     }
 
     #[getter]

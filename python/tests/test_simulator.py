@@ -21,8 +21,22 @@ def test_the_papers_figure_is_flown_as_it_is_printed():
     assert flight.quantities["thrust"][0] == "N" and set(flight.quantities) == set(log)
 
 
+def test_a_route_through_points_is_flown():
+    """A figure eight that crosses itself, smoothly through an array of points: within a millimetre in calm air after joining."""
+    t = np.linspace(0.0, 2.0 * np.pi, 32, endpoint=False)
+    points = np.column_stack([6 * np.cos(t), 6 * np.sin(t) * np.cos(t), np.full_like(t, -10.0)])
+    # Their spacing changes, so that it passes by some of them, by centimetres.
+    path = slung.Path(kind="route", points=points, closed=True, corner_m="smooth", speed=1.5, yaw="tangent")
+    assert path.outline().shape == (257, 3) and path.distance(points[5]) < 0.1
+    flight = slung.run(slung.Scenario("figure-eight", path=path, duration_s=45.0))
+    assert flight.failure is None
+    assert flight.log["d_c"][flight.log["t_s"] >= 30.0].max() < 1e-3
+    with pytest.raises(slung.Refused, match="points"):
+        slung.Path(kind="route", points=[[0.0, 0.0, -10.0]], speed=1.0)
+
+
 def test_every_built_in_scenario_can_be_had():
-    assert {"fig2a", "fig3b", "knot", "building"} <= set(slung.Scenario.names())
+    assert {"fig2a", "fig3b", "knot", "building", "survey-rows"} <= set(slung.Scenario.names())
     for name in slung.Scenario.names():
         assert slung.Scenario(name).name == name
 

@@ -134,7 +134,9 @@ impl<T: Real> ScalarField<T> for NoFormula {
 ///
 /// # Errors
 /// What curve or profile refuse, by the parameter's name where it is one parameter's value.
-pub fn path<T: Real>(parameters: &Parameters<T>) -> Result<AnyPath<T>, OutOfRange<T>> {
+pub fn path<T: Real, F, G, const K: usize, S>(
+    parameters: &Parameters<T>,
+) -> Result<AnyPath<T, F, G, K, S>, OutOfRange<T>> {
     Ok(AnyPath::Profiled(Profiled {
         curve: AnyCurve::new(parameters)?,
         speed: AnySpeed::new(parameters)?,
