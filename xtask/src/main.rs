@@ -3,10 +3,12 @@
 use clap::{Parser, Subcommand};
 
 mod callgraph;
+mod dist;
 mod emulator;
 mod image;
 mod object;
 mod report;
+mod sbom;
 mod target;
 mod thumb;
 mod toolchain;
@@ -41,6 +43,18 @@ enum Command {
         #[arg(default_values = ["host", "cortex-m4f", "cortex-m7"])]
         machines: Vec<object::Machine>,
     },
+    /// Builds all that others install into dist/: objects, Python wheel, firmware images; with bills
+    /// of materials, licences and checksums.
+    #[command(after_help = "Needs maturin (`pip install maturin`), and what `object` and `thumb` need.\n\n\
+        Examples:\n  cargo xtask dist\n  (cd dist && sha256sum --check SHA256SUMS)")]
+    Dist,
+    /// Builds the C interface's object twice and compares the bytes.
+    #[command(after_help = "Example:\n  cargo xtask reproduce cortex-m4f")]
+    Reproduce {
+        /// What for.
+        #[arg(default_values = ["host", "cortex-m4f", "cortex-m7"])]
+        machines: Vec<object::Machine>,
+    },
     /// Runs cargo in firmware/ with whichever compiler builds for thumbv7em here.
     #[command(after_help = "Example:\n  cargo xtask thumb build --release")]
     Thumb {
@@ -54,6 +68,8 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Target { json, refresh } => target::run(json, refresh),
         Command::Object { machines } => object::run(&machines),
+        Command::Dist => dist::run(),
+        Command::Reproduce { machines } => dist::reproduce(&machines),
         Command::Thumb { arguments } => {
             let status = toolchain::Toolchain::find()?.cargo(&arguments).status()?;
             anyhow::ensure!(status.success(), "cargo {} failed", arguments.join(" "));

@@ -57,21 +57,26 @@ pub fn run(machines: &[Machine]) -> Result<()> {
         std::fs::copy(root().join(from), dist.join(to)).with_context(|| format!("cannot copy {from} to dist/"))?;
     }
     for &machine in machines {
-        let folder = dist.join(machine.name());
-        std::fs::create_dir_all(&folder)?;
-        let object = folder.join("slung.o");
-        prelink(machine, &archive(machine)?, &object)?;
+        let target = root().join("capi/object/target").join(machine.name());
+        let object = build(machine, &target, &dist.join(machine.name()))?;
         let (text, data) = inspect(&object)?;
         println!("{}: {text} B of code and constants, {data} B of data", object.strip_prefix(root())?.display());
     }
     Ok(())
 }
 
+/// Builds the object for `machine` by cargo's folder `target` into `folder`, and says where it is.
+pub fn build(machine: Machine, target: &Path, folder: &Path) -> Result<PathBuf> {
+    std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let object = folder.join("slung.o");
+    prelink(machine, &archive(machine, target)?, &object)?;
+    Ok(object)
+}
+
 /// Builds the static library.
-fn archive(machine: Machine) -> Result<PathBuf> {
+fn archive(machine: Machine, target: &Path) -> Result<PathBuf> {
     let folder = root().join("capi/object");
     let arguments = ["build", "--release", "--quiet"].map(str::to_owned);
-    let target = folder.join("target").join(machine.name());
     let (mut cargo, triple) = match machine {
         Machine::Host => {
             let mut cargo = Command::new("cargo");
@@ -90,9 +95,9 @@ fn archive(machine: Machine) -> Result<PathBuf> {
             (cargo, Some(crate::toolchain::TRIPLE))
         }
     };
-    let status = cargo.current_dir(&folder).arg("--target-dir").arg(&target).status().context("cannot run cargo")?;
+    let status = cargo.current_dir(&folder).arg("--target-dir").arg(target).status().context("cannot run cargo")?;
     ensure!(status.success(), "the C interface does not build for {}", machine.name());
-    let target = triple.map_or_else(|| target.clone(), |triple| target.join(triple));
+    let target = triple.map_or_else(|| target.to_owned(), |triple| target.join(triple));
     Ok(target.join("release/libslung.a"))
 }
 
