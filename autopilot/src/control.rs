@@ -2,21 +2,22 @@
 //!
 //! ```text
 //!         arm                first good state
-//!   OFF ───────▶ OFF, armed ──────────────────▶ IDLE, JOIN, FOLLOW, HOLD, LAND, FAULT: the supervisor's
+//!   OFF ───────▶ OFF, armed ──────────────────▶ IDLE, TAKE-OFF, JOIN, FOLLOW, HOLD, LAND, FAULT: the supervisor's
 //!    ▲                                                          │
 //!    └──────────── landed; or disarm, from anywhere ────────────┘
 //! ```
 //!
-//! Where nothing was asked for, or to idle, the first good state finds a vehicle on the ground,
-//! whose rotors turn at their least thrust. Where more was, it finds one in flight, which is taken
-//! over from hover thrust and does that. From there on every control period steps the supervisor
+//! Where nothing was asked for, or to idle, or where the state says that it stands, the first good
+//! state finds a vehicle on the ground, whose rotors turn at their least thrust. Where more was, it
+//! finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps the supervisor
 //! (`controller::Supervisor`, which has the modes' table) on the newest state: a missing one is
 //! passed on as absent; the supervisor coasts, then sinks or cuts. What the pilot asks for
 //! ([`Autopilot::request`]) lasts until disarming.
 
-use controller::{Command, Fault, Margin, Mode, Request, State};
+use controller::{Actuation as _, Command, Fault, Margin, Mode, Request, State};
 use link::dialect::{
     LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
+    MavLandedState,
 };
 
 use rig::{Output, Rig, SetupError, parameter};
@@ -24,10 +25,13 @@ use rig::{Output, Rig, SetupError, parameter};
 use crate::epoch::Epoch;
 use crate::failsafe::{Failsafe, Loss};
 use crate::report;
+use crate::seen::{Navigation, Seen};
 use crate::settings::{Setting, Settings};
 
 /// Arming needs a state no older than this, s.
 const FRESH_S: f32 = 0.5;
+/// The kill pin counts when it is high for so many control steps in a row: no spike stops a flight.
+const PRESSED: u8 = 3;
 
 /// What drives the control step, and whether the rotors do as they are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,18 +79,28 @@ pub struct Counters {
 pub enum ArmRefused {
     /// The parameters make no controller.
     Setup(SetupError<f32>),
+    /// Limits and rotors give no more than this share of the hover thrust.
+    Weak(f32),
     /// There has been no good state just now.
     NoState,
-    /// The pilot's kill switch is on.
+    /// A kill switch is on.
     Killed,
     /// This is lost.
     Lost(Loss),
+}
+
+impl ArmRefused {
+    /// Whether it may be armed as it is set up, but not now.
+    pub(crate) fn is_for_now(&self) -> bool {
+        !matches!(self, Self::Setup(_) | Self::Weak(_))
+    }
 }
 
 impl core::fmt::Display for ArmRefused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Setup(error) => error.fmt(f),
+            Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),
             Self::Killed => f.write_str("not armed: the kill switch is on"),
             Self::Lost(Loss::Station) => f.write_str("not armed: ground station lost"),
@@ -103,7 +117,7 @@ impl core::error::Error for ArmRefused {}
 pub enum Notice {
     /// Nothing yet.
     Nothing,
-    /// The pilot's switch has stopped the rotors.
+    /// The pilot's switch, or the board's, has stopped the rotors.
     Killed,
     /// Too long without a state: the rotors have stopped.
     Blind,
@@ -145,6 +159,11 @@ pub struct Autopilot {
     request: Request,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
+    navigation: Navigation,
+    /// The UAV's own navigation was there at the last control period.
+    navigates: bool,
+    /// The vehicle is known to stand on the ground.
+    stands: bool,
     epoch: Epoch,
     /// A state from another time has come since the last control period.
     stale: bool,
@@ -154,7 +173,10 @@ pub struct Autopilot {
     since_state_s: f32,
     blind_s: f32,
     failsafe: Failsafe,
+    /// The pilot's kill switch is on; and for how many steps the board's has been, up to
+    /// [`PRESSED`].
     kill: bool,
+    kill_pin: u8,
     /// The last notice, and how many there have been.
     notice: (u32, Notice),
     last: Option<Answer>,
@@ -179,6 +201,9 @@ impl Autopilot {
             rig: None,
             request: Request::Idle,
             inbox: None,
+            navigation: Navigation::new(),
+            navigates: false,
+            stands: false,
             epoch: Epoch::default(),
             stale: false,
             absence: None,
@@ -186,6 +211,7 @@ impl Autopilot {
             blind_s: 0.0,
             failsafe: Failsafe::default(),
             kill: false,
+            kill_pin: 0,
             notice: (0, Notice::Nothing),
             last: None,
             overrun: false,
@@ -244,6 +270,18 @@ impl Autopilot {
         !matches!(self.mode(), Mode::Off | Mode::Idle)
     }
 
+    /// Whether it is on the ground, as far as is known.
+    #[must_use]
+    pub(crate) fn landed_state(&self) -> MavLandedState {
+        match self.mode() {
+            Mode::Off | Mode::Idle if self.stands => MavLandedState::MAV_LANDED_STATE_ON_GROUND,
+            Mode::Off | Mode::Idle => MavLandedState::MAV_LANDED_STATE_UNDEFINED,
+            Mode::TakeOff => MavLandedState::MAV_LANDED_STATE_TAKEOFF,
+            Mode::Land => MavLandedState::MAV_LANDED_STATE_LANDING,
+            _ => MavLandedState::MAV_LANDED_STATE_IN_AIR,
+        }
+    }
+
     /// What the last control period's state lacked.
     #[must_use]
     pub fn absence(&self) -> Option<Absence> {
@@ -283,10 +321,30 @@ impl Autopilot {
     pub fn hear_stick(&mut self, kill: bool) {
         self.failsafe.hear_stick();
         self.kill = kill;
-        if kill && self.is_armed() {
+        self.obey_kill();
+    }
+
+    /// Whether the board's kill pin is high, with which the rotors stop. To be called before each
+    /// control step.
+    pub fn sense_kill_pin(&mut self, is_high: bool) {
+        self.kill_pin = if is_high { (self.kill_pin + 1).min(PRESSED) } else { 0 };
+        self.obey_kill();
+    }
+
+    fn is_killed(&self) -> bool {
+        self.kill || self.kill_pin >= PRESSED
+    }
+
+    fn obey_kill(&mut self) {
+        if self.is_killed() && self.is_armed() {
             self.disarm();
             self.note(Notice::Killed);
         }
+    }
+
+    /// What the UAV's own navigation has to say, beside the states.
+    pub(crate) fn navigation_mut(&mut self) -> &mut Navigation {
+        &mut self.navigation
     }
 
     /// The battery has so much left, %.
@@ -297,6 +355,35 @@ impl Autopilot {
     /// Asks for something, now or for after arming.
     pub fn request(&mut self, request: Request) {
         self.request = request;
+    }
+
+    /// Takes off, to hold.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub fn take_off(&mut self) -> Result<(), &'static str> {
+        match self.mode() {
+            Mode::TakeOff => Ok(()),
+            Mode::Idle if self.navigates => {
+                self.request(Request::Hold);
+                Ok(())
+            }
+            Mode::Idle => Err("take-off needs the UAV's own position"),
+            Mode::Off => Err("to take off, arm on the ground first"),
+            _ => Err("in flight already"),
+        }
+    }
+
+    /// Lands where it is; on the ground it stops its rotors.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub fn land(&mut self) -> Result<(), &'static str> {
+        if self.mode() == Mode::Off {
+            return Err("not in flight");
+        }
+        self.request(Request::Land);
+        Ok(())
     }
 
     /// What the board found out when it started.
@@ -318,7 +405,12 @@ impl Autopilot {
     /// Why not; it stays disarmed.
     pub fn arm(&mut self) -> Result<(), ArmRefused> {
         if !self.is_armed() {
-            if self.kill {
+            let rig = Rig::new(self.settings.rig()).map_err(ArmRefused::Setup)?;
+            let share = rig.actuators().largest_thrust() / rig.vehicle().hover_thrust();
+            if share < self.settings.get(Setting::ARMING_THRUST) {
+                return Err(ArmRefused::Weak(share));
+            }
+            if self.is_killed() {
                 return Err(ArmRefused::Killed);
             }
             if let Some(loss) = Loss::ALL.into_iter().find(|loss| self.failsafe.is_lost(*loss, &self.settings)) {
@@ -327,7 +419,7 @@ impl Autopilot {
             if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
                 return Err(ArmRefused::NoState);
             }
-            self.rig = Some(Rig::new(self.settings.rig()).map_err(ArmRefused::Setup)?);
+            self.rig = Some(rig);
             self.inbox = None;
             self.epoch = Epoch::default();
             self.blind_s = 0.0;
@@ -339,6 +431,7 @@ impl Autopilot {
 
     /// Rotors off. What was asked for is forgotten.
     pub fn disarm(&mut self) {
+        self.stands &= !self.is_flying();
         self.rig = None;
         self.request = Request::Idle;
         self.last = None;
@@ -360,6 +453,7 @@ impl Autopilot {
     pub fn tick(&mut self) -> Answer {
         let frame = self.inbox.take();
         let period_s = self.period_s();
+        self.navigation.pass(period_s);
         for (loss, wanted) in self.failsafe.advance(period_s, &self.settings).into_iter().flatten() {
             self.lose(loss, wanted);
         }
@@ -466,12 +560,19 @@ impl Autopilot {
     fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         let mut faults = self.standing_faults();
         self.overrun = false;
-        let state = frame.filter(|frame| may_start(frame)).map(link::state_of);
-        let good = state.as_ref().filter(|state| state.check().is_ok());
+        let seen = match frame {
+            Some(frame) if may_start(frame) => Seen::of(frame),
+            Some(_) => Seen::bad(),
+            None => Seen::default(),
+        };
+        // In lockstep the same frames have the same answers, whatever comes between them.
+        let seen = if self.drive() == Drive::Lockstep { seen } else { seen.or(&self.navigation) };
+        let good = seen.good();
+        self.navigates = seen.uav().is_some();
         let is_stale = core::mem::take(&mut self.stale);
-        self.absence = match frame {
-            _ if good.is_some() => None,
-            Some(_) => Some(Absence::Bad),
+        self.absence = match good {
+            Some(_) => None,
+            None if seen.is_bad => Some(Absence::Bad),
             None if is_stale => Some(Absence::Stale),
             None => Some(Absence::Missing),
         };
@@ -497,10 +598,15 @@ impl Autopilot {
             begin(rig, frame, state, self.request);
         }
         let integral = rig.integral();
-        let was_flying = is_flying(rig.mode());
+        let before = rig.mode();
         let phase = frame.map_or(0.0, |frame| frame.reference_phase);
-        let Output { command, mode, fault, limited, .. } = *rig.step(state.as_ref(), self.request, phase);
-        let has_fallen_back = was_flying && self.request == Request::Follow && !is_flying(mode);
+        let mut measured = seen.measured();
+        if before == Mode::Off && good.is_none() {
+            // Whether it stands or flies, the first good state says.
+            measured.uav = None;
+        }
+        let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
+        let has_fallen_back = is_flying(before) && self.request == Request::Follow && !is_flying(mode);
         self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
 
         faults |= fault.map_or(LoadFault::empty(), report::fault);
@@ -520,15 +626,15 @@ impl Autopilot {
         if self.drive() == Drive::Flight {
             answer.outputs = rotor;
         }
-        if let (Some(frame), Some(state)) = (frame, good) {
-            if self.is_telemetry_s_turn() || frame.telemetry != 0 {
-                answer.telemetry =
-                    self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
-            }
-            if mode == Mode::Off {
-                // Landed.
-                self.disarm();
-            }
+        if let (Some(frame), Some(state)) = (frame, good)
+            && (self.is_telemetry_s_turn() || frame.telemetry != 0)
+        {
+            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
+        }
+        let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
+        self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
+        if is_down {
+            self.disarm();
         }
         self.end_blindness(mode, period_s);
         answer
@@ -563,7 +669,7 @@ fn begin(rig: &mut Rig<f32>, frame: &LOAD_STATE_DATA, state: &State<f32>, reques
         LoadAction::LOAD_ACTION_START => rig.start(state, frame.zeta),
         LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
         LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
-        LoadAction::LOAD_ACTION_CONTINUE => Ok(()),
+        LoadAction::LOAD_ACTION_CONTINUE | LoadAction::LOAD_ACTION_STAND => Ok(()),
     };
     debug_assert!(begun.is_ok(), "{begun:?}");
 }

@@ -8,6 +8,9 @@
 //!                                                   Answer: command, rotors, telemetry
 //! ```
 //!
+//! Where the UAV's own navigation comes as messages of its own, the newest of each is what is
+//! measured at the next step.
+//!
 //! The controller is a [`Rig`](rig::Rig) made of parameters; here stand only when it is stepped and
 //! what the link hears of it.
 //!
@@ -19,6 +22,7 @@ mod control;
 mod epoch;
 mod failsafe;
 mod report;
+mod seen;
 mod server;
 mod settings;
 mod store;

@@ -17,6 +17,7 @@ pub fn mode(mode: Mode) -> LoadMode {
     match mode {
         Mode::Off => LoadMode::LOAD_MODE_OFF,
         Mode::Idle => LoadMode::LOAD_MODE_IDLE,
+        Mode::TakeOff => LoadMode::LOAD_MODE_TAKEOFF,
         Mode::Join => LoadMode::LOAD_MODE_ENGAGE,
         Mode::Follow => LoadMode::LOAD_MODE_FOLLOW,
         Mode::Hold => LoadMode::LOAD_MODE_HOLD,

@@ -7,7 +7,7 @@ const ACTIONS: &[&str] = &["nothing", "hold", "land"];
 const CHANNEL: (f64, f64) = (0.0, 18.0);
 const BUTTON: (f64, f64) = (0.0, 32.0);
 
-const OWN: [Entry<f64>; 16] = [
+const OWN: [Entry<f64>; 17] = [
     Entry::real(
         "LINK_DIALECT",
         "dialect",
@@ -24,6 +24,14 @@ const OWN: [Entry<f64>; 16] = [
         "What drives the control step.",
     ),
     Entry::whole("TLM_EVERY", "every", 50.0, (0.0, 1e6), "Steps between two telemetry frames; 0 for none."),
+    Entry::real(
+        "ARM_THRUST",
+        "share",
+        "",
+        1.6,
+        (1.0, 10.0),
+        "Share of the hover thrust that limits and rotors must give, for arming.",
+    ),
     Entry::real(
         "FS_GCS_T",
         "timeout",
@@ -76,6 +84,8 @@ impl Setting {
     pub const DRIVE: Self = Self(rig::index_of(&OWN, "SYS_SIM"));
     /// `TLM_EVERY`: steps between two telemetry frames.
     pub const TELEMETRY_EVERY: Self = Self(rig::index_of(&OWN, "TLM_EVERY"));
+    /// `ARM_THRUST`: the share of the hover thrust that must be there for arming.
+    pub const ARMING_THRUST: Self = Self(rig::index_of(&OWN, "ARM_THRUST"));
     /// `FS_GCS_T`: after how long a ground station is lost, s.
     pub const STATION_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_GCS_T"));
     /// `FS_GCS_ACT`: what is done then.

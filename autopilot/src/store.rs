@@ -45,6 +45,8 @@ pub enum NotKept {
     Full,
     /// The flash's fault.
     Flash,
+    /// There is none.
+    NoMemory,
 }
 
 impl From<FlashFault> for NotKept {

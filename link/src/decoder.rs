@@ -2,6 +2,7 @@
 
 use mavlink_core::{MAV_STX_V2, MavlinkVersion, Message, MessageData, calculate_crc};
 
+use crate::Address;
 use crate::dialect::*;
 
 /// Start marker, nine bytes of header, checksum.
@@ -49,9 +50,9 @@ impl Decoder {
         Self { buffer: [0; LONGEST], length: 0 }
     }
 
-    /// Takes one byte; calls `sink` for each message that it completes and each candidate that it
-    /// shows to be none.
-    pub fn push(&mut self, byte: u8, mut sink: impl FnMut(Result<MavMessage, Rejected>)) {
+    /// Takes one byte; calls `sink` for each message that it completes, with its sender, and each
+    /// candidate that it shows to be none.
+    pub fn push(&mut self, byte: u8, mut sink: impl FnMut(Result<(MavMessage, Address), Rejected>)) {
         if let Some(slot) = self.buffer.get_mut(self.length) {
             *slot = byte;
             self.length += 1;
@@ -68,14 +69,15 @@ impl Decoder {
     }
 
     /// The first candidate's fate, once it is known; its bytes are then gone.
-    fn examine(&mut self) -> Option<Result<MavMessage, Rejected>> {
+    fn examine(&mut self) -> Option<Result<(MavMessage, Address), Rejected>> {
         let received = self.buffer.get(..self.length)?;
         let start = received.iter().position(|&byte| byte == MAV_STX_V2).unwrap_or(self.length);
         if start > 0 {
             self.drop_first(start);
         }
         let received = self.buffer.get(..self.length)?;
-        let (&[_, payload, incompatible, _, _, _, _, id0, id1, id2], _) = received.split_first_chunk::<HEADER>()?;
+        let (&[_, payload, incompatible, _, _, system, component, id0, id1, id2], _) =
+            received.split_first_chunk::<HEADER>()?;
         let id = u32::from_le_bytes([id0, id1, id2, 0]);
         let payload = usize::from(payload);
         let known = incompatible == 0 && longest_payload(id).is_some_and(|longest| (1..=longest).contains(&payload));
@@ -92,7 +94,7 @@ impl Decoder {
         match message {
             Some(message) => {
                 self.drop_first(end + CHECKSUM);
-                Some(Ok(message))
+                Some(Ok((message, (system, component))))
             }
             None => {
                 self.drop_first(1);
@@ -123,13 +125,19 @@ fn longest_payload(id: u32) -> Option<usize> {
         PARAM_REQUEST_LIST_DATA,
         PARAM_VALUE_DATA,
         PARAM_SET_DATA,
+        ATTITUDE_QUATERNION_DATA,
+        LOCAL_POSITION_NED_DATA,
         MANUAL_CONTROL_DATA,
         RC_CHANNELS_OVERRIDE_DATA,
+        COMMAND_INT_DATA,
         COMMAND_LONG_DATA,
         COMMAND_ACK_DATA,
+        HIGHRES_IMU_DATA,
+        FILE_TRANSFER_PROTOCOL_DATA,
         TIMESYNC_DATA,
         BATTERY_STATUS_DATA,
         AUTOPILOT_VERSION_DATA,
+        EXTENDED_SYS_STATE_DATA,
         STATUSTEXT_DATA,
         AVAILABLE_MODES_DATA,
         CURRENT_MODE_DATA,

@@ -21,7 +21,7 @@ mod generated {
     include!(concat!(env!("OUT_DIR"), "/modules.rs"));
 }
 
-pub use convert::{name, state_frame, state_of, text, text_of};
+pub use convert::{measured_frame, name, specific_force_of, state_frame, state_of, text, text_of, uav_of};
 pub use decoder::{Decoder, Rejected};
 pub use generated::slung_load as dialect;
 pub use generated::slung_load::MavMessage;
@@ -33,22 +33,24 @@ use mavlink_core::{MAVLinkV2MessageRaw, MavHeader};
 /// float.
 pub const FINGERPRINT: u32 = include!(concat!(env!("OUT_DIR"), "/fingerprint.rs"));
 
-/// MAVLink address of the controller: system, component (autopilot).
-pub const CONTROLLER: (u8, u8) = (1, 1);
-/// MAVLink address of the simulator or ground station.
-pub const STATION: (u8, u8) = (255, 190);
+/// A MAVLink address: system, component.
+pub type Address = (u8, u8);
+/// The controller's, an autopilot.
+pub const CONTROLLER: Address = (1, 1);
+/// The simulator's or ground station's.
+pub const STATION: Address = (255, 190);
 
 /// Numbers the frames one end sends.
 #[derive(Clone, Copy, Debug)]
 pub struct Encoder {
-    address: (u8, u8),
+    address: Address,
     sequence: u8,
 }
 
 impl Encoder {
     /// For frames from `address`.
     #[must_use]
-    pub const fn new(address: (u8, u8)) -> Self {
+    pub const fn new(address: Address) -> Self {
         Self { address, sequence: 0 }
     }
 

@@ -33,6 +33,17 @@ impl<T: Real> Uav<T> {
         }
     }
 
+    /// The same in another scalar, rounded to nearest. Host-side use.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Uav<U> {
+        Uav {
+            position: self.position.map(T::cast),
+            velocity: self.velocity.map(T::cast),
+            attitude: self.attitude.map(T::cast),
+            body_rate: self.body_rate.map(T::cast),
+        }
+    }
+
     /// `Ok` if every number is finite and within the ranges of [`State::check`].
     ///
     /// # Errors

@@ -141,7 +141,7 @@ fn a_low_battery_lands_once_and_keeps_it_down() {
     let (result, said) = flying.station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     assert_eq!(
         (result, said),
-        (MavResult::MAV_RESULT_DENIED as u8, vec!["not armed: battery below FS_BAT_PCT".into()])
+        (MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8, vec!["not armed: battery below FS_BAT_PCT".into()])
     );
 }
 

@@ -10,6 +10,7 @@ use crate::station::{Station, arm, driven, fly, frame, see, texts};
 
 const ARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
 const DENIED: u8 = MavResult::MAV_RESULT_DENIED as u8;
+const NOT_NOW: u8 = MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8;
 const ACCEPTED: u8 = MavResult::MAV_RESULT_ACCEPTED as u8;
 
 fn arming(target_system: u8, target_component: u8) -> MavMessage {
@@ -137,17 +138,17 @@ fn with_its_rotors_on_it_arms_on_a_fresh_good_state_alone() {
     let refused = "not armed: no good state just now";
     let try_arming = |station: &mut Station| station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
     let mut station = Station::new(driven(0.0));
-    assert_eq!(try_arming(&mut station), (DENIED, vec![refused.to_owned()]));
+    assert_eq!(try_arming(&mut station), (NOT_NOW, vec![refused.to_owned()]));
     // A bad one does not count.
     station.autopilot.receive(&LOAD_STATE_DATA { rod: [0.0; 3], ..frame(1) });
     station.autopilot.tick();
-    assert_eq!(try_arming(&mut station).0, DENIED);
+    assert_eq!(try_arming(&mut station).0, NOT_NOW);
     fly(&mut station.autopilot, 2);
     // Half a second of 2 ms, and as much again.
     for _ in 0..500 {
         station.autopilot.tick();
     }
-    assert_eq!(try_arming(&mut station).0, DENIED);
+    assert_eq!(try_arming(&mut station).0, NOT_NOW);
     fly(&mut station.autopilot, 3);
     assert_eq!(try_arming(&mut station).0, ACCEPTED);
     // A simulated vehicle may wait for its states: no rotor turns.
@@ -169,16 +170,22 @@ fn modes_are_announced_by_the_standard_messages() {
             _ => None,
         })
         .collect();
-    assert_eq!(modes.len(), 7);
+    assert_eq!(modes.len(), 8);
     for (mode, index) in modes.iter().zip(1..) {
-        assert_eq!((mode.number_modes, mode.mode_index), (7, index));
+        assert_eq!((mode.number_modes, mode.mode_index), (8, index));
         let is_selectable = mode.properties & 2 == 0;
         let number = mode.custom_mode as f32;
         let custom = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u32 as f32;
         let asked = station.command(MavCmd::MAV_CMD_DO_SET_MODE, custom, number).0;
-        assert_eq!(asked == ACCEPTED, is_selectable, "{}", link::text_of(&*mode.mode_name));
+        // Take-off is for a vehicle that stands ready.
+        let expected = match mode.custom_mode {
+            7 => NOT_NOW,
+            _ if is_selectable => ACCEPTED,
+            _ => DENIED,
+        };
+        assert_eq!(asked, expected, "{}", link::text_of(&*mode.mode_name));
     }
-    for (index, expected) in [(3.0, ACCEPTED), (8.0, DENIED), (f32::NAN, DENIED), (-1.0, DENIED)] {
+    for (index, expected) in [(3.0, ACCEPTED), (9.0, DENIED), (f32::NAN, DENIED), (-1.0, DENIED)] {
         assert_eq!(station.command(request, 435.0, index).0, expected, "{index}");
     }
     assert_eq!(station.command(request, 436.0, 0.0).0, ACCEPTED);
@@ -232,7 +239,7 @@ fn what_is_set_for_flight_is_to_be_kept_and_nothing_of_a_simulation() {
     use autopilot::{Next, Server};
     let kept = |autopilot: &mut Autopilot, name, value| {
         let message = setting(name, value, MavParamType::MAV_PARAM_TYPE_REAL32 as u8);
-        match Server::new().handle(Ok(message), 0, autopilot, &mut |_| {}) {
+        match Server::new().handle(Ok((message, link::STATION)), 0, autopilot, &mut |_| {}) {
             Next::Store(index) => autopilot.settings().at(index).map(|(entry, _)| entry.name.as_str()),
             _ => None,
         }

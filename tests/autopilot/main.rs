@@ -4,6 +4,7 @@
 mod bytes;
 mod control;
 mod failsafe;
+mod ground;
 mod link;
 mod modes;
 mod station;

@@ -130,7 +130,7 @@ fn modes_that_cannot_be_asked_for_are_denied_in_words() {
     for mode in [LoadMode::LOAD_MODE_OFF, LoadMode::LOAD_MODE_ENGAGE, LoadMode::LOAD_MODE_FAULT] {
         let (result, said) = station.ask(mode);
         assert_eq!(result, MavResult::MAV_RESULT_DENIED as u8, "{mode:?}");
-        assert_eq!(said, ["modes to ask for: idle, follow, hold, land"]);
+        assert_eq!(said, ["modes: idle, follow, hold, land, take-off"]);
     }
     // Without the flag it is no mode of this dialect.
     let (result, _) = station.command(MavCmd::MAV_CMD_DO_SET_MODE, 0.0, LoadMode::LOAD_MODE_HOLD as u32 as f32);

@@ -2,6 +2,7 @@
 //! `qemu-system-arm` and a compiler for thumbv7em.
 
 mod common;
+mod mission;
 
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
@@ -60,6 +61,19 @@ fn the_figures_are_the_same_on_every_emulated_board() {
             assert_eq!(commands.unwrap(), fly_here(&scenario), "{} on {machine}", scenario.name);
             target = back;
         }
+    }
+}
+
+#[test]
+fn a_mission_from_ground_to_ground_is_the_same_on_every_emulated_board() {
+    let here = mission::fly_here();
+    mission::check(&here);
+    for (machine, image) in images() {
+        let mut target = emulated(machine, image, OPTIONS);
+        target.prepare(&mission::scenario()).unwrap();
+        target.stand();
+        let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
+        assert_eq!(there, here, "on {machine}");
     }
 }
 

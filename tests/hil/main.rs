@@ -3,6 +3,7 @@
 //! a reason.
 
 mod common;
+mod mission;
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -33,6 +34,17 @@ fn the_figures_are_the_same_over_the_link() {
         assert_eq!(commands.unwrap(), fly_here(&scenario), "{}", scenario.name);
         target = back;
     }
+}
+
+#[test]
+fn a_mission_from_ground_to_ground_is_the_same_over_the_link() {
+    let here = mission::fly_here();
+    mission::check(&here);
+    let mut target = soft_target(OPTIONS, |stream| stream).unwrap();
+    target.prepare(&mission::scenario()).unwrap();
+    target.stand();
+    let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
+    assert_eq!(there, here);
 }
 
 #[test]

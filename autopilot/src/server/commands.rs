@@ -23,36 +23,41 @@ impl Server {
     ) -> Next {
         const ARM: u16 = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
         const MODE: u16 = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+        const STANDARD: u16 = MavCmd::MAV_CMD_DO_SET_STANDARD_MODE as u16;
+        const TAKE_OFF: u16 = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
+        const LAND: u16 = MavCmd::MAV_CMD_NAV_LAND as u16;
         const REBOOT: u16 = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16;
         const MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
         let mut next = Next::Nothing;
-        let mut denied = |reason: &dyn Display| {
+        let mut refused = |reason: &dyn Display, result| {
             send(warning(reason));
-            MavResult::MAV_RESULT_DENIED
+            result
         };
+        const DENIED: MavResult = MavResult::MAV_RESULT_DENIED;
+        const NOT_NOW: MavResult = MavResult::MAV_RESULT_TEMPORARILY_REJECTED;
         let result = match request.command {
             ARM if request.param1 == 1.0 => match autopilot.arm() {
                 Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
-                Err(refused) => denied(&refused),
+                Err(why) => refused(&why, if why.is_for_now() { NOT_NOW } else { DENIED }),
             },
             ARM if request.param1 == 0.0 => {
                 if autopilot.is_flying() && request.param2 != FORCE {
-                    denied(&"in flight: to disarm, param2 has to be 21196")
+                    refused(&"in flight: to disarm, param2 has to be 21196", DENIED)
                 } else {
                     autopilot.disarm();
                     MavResult::MAV_RESULT_ACCEPTED
                 }
             }
-            ARM => denied(&"param1 is 1 to arm, 0 to disarm"),
-            MODE => match wanted(request) {
-                None => denied(&"modes to ask for: idle, follow, hold, land"),
-                Some(wanted) => {
-                    autopilot.request(wanted);
-                    MavResult::MAV_RESULT_ACCEPTED
-                }
+            ARM => refused(&"param1 is 1 to arm, 0 to disarm", DENIED),
+            MODE | STANDARD | TAKE_OFF | LAND => match asked(request) {
+                None => refused(&"modes: idle, follow, hold, land, take-off", DENIED),
+                Some(mode) => match ask(autopilot, mode, request.command == MODE) {
+                    Err(reason) => refused(&reason, NOT_NOW),
+                    Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
+                },
             },
-            REBOOT if autopilot.is_armed() => denied(&"not while armed"),
-            REBOOT if request.param1 != 1.0 => denied(&"only to reboot"),
+            REBOOT if autopilot.is_armed() => refused(&"not while armed", DENIED),
+            REBOOT if request.param1 != 1.0 => refused(&"only to reboot", DENIED),
             REBOOT => {
                 next = Next::Reboot;
                 MavResult::MAV_RESULT_ACCEPTED
@@ -74,10 +79,13 @@ impl Server {
         const MODE: f32 = 436.0;
         const AVAILABLE: f32 = 435.0;
         const VERSION: f32 = 148.0;
+        const LANDED: f32 = 245.0;
         if request.param1 == MODE {
             send(Self::current_mode(autopilot));
         } else if request.param1 == VERSION {
             send(version());
+        } else if request.param1 == LANDED {
+            send(Self::landed_state(autopilot));
         } else if request.param1 == AVAILABLE && request.param2 == 0.0 {
             self.modes = Some(0);
         } else if request.param1 == AVAILABLE {
@@ -91,20 +99,35 @@ impl Server {
     }
 }
 
-/// What `MAV_CMD_DO_SET_MODE` asks for.
-fn wanted(request: &COMMAND_LONG_DATA) -> Option<Request> {
-    let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
-    MODES
-        .into_iter()
-        .filter(|_| is_custom)
-        .find(|&(mode, ..)| report::mode(mode) as u32 as f32 == request.param2)
-        .and_then(|(mode, ..)| match mode {
-            Mode::Idle => Some(Request::Idle),
-            Mode::Follow => Some(Request::Follow),
-            Mode::Hold => Some(Request::Hold),
-            Mode::Land => Some(Request::Land),
-            _ => None,
-        })
+/// The mode that a command asks for, if it can be.
+fn asked(request: &COMMAND_LONG_DATA) -> Option<Mode> {
+    const STANDARD: u16 = MavCmd::MAV_CMD_DO_SET_STANDARD_MODE as u16;
+    const TAKE_OFF: u16 = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
+    const LAND: u16 = MavCmd::MAV_CMD_NAV_LAND as u16;
+    match request.command {
+        TAKE_OFF => Some(Mode::TakeOff),
+        LAND => Some(Mode::Land),
+        STANDARD => modes::standardized(request.param1),
+        _ => {
+            let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
+            let is_it = |mode| report::mode(mode) as u32 as f32 == request.param2;
+            MODES.into_iter().find(|&(mode, _, can)| is_custom && can && is_it(mode)).map(|(mode, ..)| mode)
+        }
+    }
+}
+
+/// Asks for it; only a mode that is `set` may be asked for before arming.
+fn ask(autopilot: &mut Autopilot, mode: Mode, is_set: bool) -> Result<(), &'static str> {
+    let request = match mode {
+        Mode::TakeOff => return autopilot.take_off(),
+        Mode::Land if !is_set => return autopilot.land(),
+        Mode::Follow => Request::Follow,
+        Mode::Hold => Request::Hold,
+        Mode::Land => Request::Land,
+        _ => Request::Idle,
+    };
+    autopilot.request(request);
+    Ok(())
 }
 
 /// What the program is and can do.

@@ -1,6 +1,7 @@
 //! The link side: what each message does, and what is answered.
 
 mod commands;
+mod files;
 mod modes;
 mod parameters;
 mod stick;
@@ -9,7 +10,7 @@ use core::fmt::Write;
 
 use controller::{Fault, Margin, Mode};
 use link::dialect::*;
-use link::{MavMessage, Message as _, Rejected};
+use link::{Address, MavMessage, Message as _, Rejected};
 
 use crate::control::{Autopilot, Drive};
 use crate::report;
@@ -82,6 +83,7 @@ impl Server {
         warning(match why {
             NotKept::Full => "set, but not kept: flash full until a reset",
             NotKept::Flash => "set, but not kept: flash failed",
+            NotKept::NoMemory => "set, but not kept: this board has no memory",
         })
     }
 
@@ -165,6 +167,13 @@ impl Server {
         modes::current(autopilot.mode(), autopilot.requested())
     }
 
+    /// Whether it has landed, once a second.
+    #[must_use]
+    pub fn landed_state(autopilot: &Autopilot) -> MavMessage {
+        let landed_state = autopilot.landed_state() as u8;
+        MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { vtol_state: 0, landed_state })
+    }
+
     /// Does what the pilot's switches have been turned to.
     fn switch(&mut self, switches: Switches, autopilot: &mut Autopilot) {
         autopilot.hear_stick(switches.kill);
@@ -179,12 +188,12 @@ impl Server {
     /// Acts on what the decoder found.
     pub fn handle(
         &mut self,
-        received: Result<MavMessage, Rejected>,
+        received: Result<(MavMessage, Address), Rejected>,
         time_ns: u64,
         autopilot: &mut Autopilot,
         send: &mut impl FnMut(MavMessage),
     ) -> Next {
-        let Ok(message) = received else {
+        let Ok((message, sender)) = received else {
             self.bad_frames = self.bad_frames.wrapping_add(1);
             return Next::Nothing;
         };
@@ -202,6 +211,14 @@ impl Server {
             MavMessage::PARAM_REQUEST_LIST(_) => self.listing = Some(0),
             MavMessage::PARAM_SET(request) => return parameters::set(&request, autopilot, send),
             MavMessage::COMMAND_LONG(request) => return self.command(&request, autopilot, send),
+            MavMessage::COMMAND_INT(COMMAND_INT_DATA { command, .. }) => {
+                let result = MavResult::MAV_RESULT_COMMAND_LONG_ONLY as u8;
+                send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }));
+            }
+            MavMessage::FILE_TRANSFER_PROTOCOL(request) => files::answer(&request, sender).into_iter().for_each(send),
+            MavMessage::LOCAL_POSITION_NED(place) => autopilot.navigation_mut().hear_place(&place),
+            MavMessage::ATTITUDE_QUATERNION(attitude) => autopilot.navigation_mut().hear_attitude(&attitude),
+            MavMessage::HIGHRES_IMU(imu) => autopilot.navigation_mut().hear_imu(&imu),
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
             MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
                 autopilot.hear_battery(battery.battery_remaining);

@@ -7,7 +7,7 @@ use link::dialect::*;
 use crate::report;
 
 /// Each mode's name, and whether it can be asked for.
-pub const MODES: [(Mode, &str, bool); 7] = [
+pub const MODES: [(Mode, &str, bool); 8] = [
     (Mode::Off, "Off", false),
     (Mode::Idle, "Idle", true),
     (Mode::Join, "Join", false),
@@ -15,6 +15,7 @@ pub const MODES: [(Mode, &str, bool); 7] = [
     (Mode::Hold, "Hold", true),
     (Mode::Land, "Land", true),
     (Mode::Fault, "Fault", false),
+    (Mode::TakeOff, "Take-off", true),
 ];
 
 /// The mode at an index from 0.
@@ -30,6 +31,11 @@ pub fn available(index: usize) -> Option<MavMessage> {
         standard_mode: standard(mode) as u8,
         mode_name: link::text(name),
     }))
+}
+
+/// The mode that is a standard one.
+pub fn standardized(number: f32) -> Option<Mode> {
+    [Mode::Land, Mode::TakeOff].into_iter().find(|&mode| standard(mode) as u32 as f32 == number)
 }
 
 /// The mode that it is in, and the one that was asked for.
@@ -49,9 +55,9 @@ pub fn current(mode: Mode, request: Request) -> MavMessage {
 }
 
 fn standard(mode: Mode) -> MavStandardMode {
-    if mode == Mode::Land {
-        MavStandardMode::MAV_STANDARD_MODE_LAND
-    } else {
-        MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD
+    match mode {
+        Mode::Land => MavStandardMode::MAV_STANDARD_MODE_LAND,
+        Mode::TakeOff => MavStandardMode::MAV_STANDARD_MODE_TAKEOFF,
+        _ => MavStandardMode::MAV_STANDARD_MODE_NON_STANDARD,
     }
 }

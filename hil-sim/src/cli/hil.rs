@@ -27,6 +27,7 @@ pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
         if arguments.files.is_empty() { load::built_in(&[FIGURES])? } else { load::all(&arguments.files)? };
     let stop = many::interrupt()?;
 
+    super::check::refuse(&scenarios, arguments.unchecked)?;
     common.tried()?;
     let planned = scenarios.len();
     let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
@@ -40,6 +41,9 @@ pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
     if !common.quiet {
         let mut out = io::stdout().lock();
         writeln!(out, "{}\n{}", report::table(&outcomes, &reference, many::width()), hil::table(&links))?;
+        for sentence in hil::lateness(&links) {
+            writeln!(out, "{sentence}")?;
+        }
         writeln!(out, "Report: {}", page.display())?;
     }
     match failure {

@@ -50,6 +50,9 @@ pub struct Arguments {
     /// Fly by the target's own timer and the clock on the wall, not in lockstep.
     #[arg(long)]
     pub real_time: bool,
+    /// Fly even what asks more of the vehicle than its [limits] or its actuators allow.
+    #[arg(long)]
+    pub unchecked: bool,
     /// Do not ask for ξ, ν, margins and what the observers found, which come with the samples that
     /// are logged: for slow lines.
     #[arg(long)]
@@ -99,6 +102,8 @@ pub struct LinkReport {
     pub reconnections: u64,
     /// Real time: periods without a command.
     pub late: u64,
+    /// Real time: how far this program was behind the clock at most, ms.
+    pub behind_ms: f64,
     /// Bits of `LOAD_FAULT` in any answer.
     pub faults: u32,
 }
@@ -207,8 +212,23 @@ fn link_report(name: &str, statistics: &Statistics, elapsed_s: f64, counts: Opti
         bad_frames: statistics.bad_frames,
         reconnections: statistics.reconnections,
         late: statistics.late,
+        behind_ms: 1e3 * statistics.behind_s,
         faults: statistics.faults,
     }
+}
+
+/// A sentence for each flight in real time that was late.
+#[must_use]
+pub fn lateness(links: &[LinkReport]) -> Vec<String> {
+    let late = links.iter().filter(|link| link.late > 0);
+    late.map(|link| {
+        let LinkReport { scenario, steps, late, behind_ms, .. } = link;
+        format!(
+            "{scenario}: late in {late} of {steps} periods, in which no command came: the one before went on; \
+             this program was {behind_ms:.1} ms behind the clock at most"
+        )
+    })
+    .collect()
 }
 
 /// The links as a table for the terminal.

@@ -116,9 +116,9 @@ pub enum HilError {
         /// What the target says.
         reason: String,
     },
-    /// The target does not arm.
-    #[error("the target does not arm: {0}")]
-    NotArmed(String),
+    /// The target does not arm, or not do what it is asked for.
+    #[error("the target refuses: {0}")]
+    Refused(String),
     /// The target's memory of the flight is gone.
     #[error("the target has lost its place at step {sequence}: it was reset in mid-flight")]
     OutOfStep {

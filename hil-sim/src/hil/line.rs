@@ -130,7 +130,7 @@ impl Line {
                 let (inbox, statistics) = (&mut self.inbox, &mut self.statistics);
                 for &byte in &bytes[..count] {
                     self.decoder.push(byte, |received| match received {
-                        Ok(message) => inbox.push_back(message),
+                        Ok((message, _)) => inbox.push_back(message),
                         Err(_) => statistics.bad_frames += 1,
                     });
                 }

@@ -21,7 +21,7 @@ mod statistics;
 mod target;
 mod wire;
 
-pub use command::{Arguments, Flown, LinkReport, fly_all, table};
+pub use command::{Arguments, Flown, LinkReport, fly_all, lateness, table};
 pub use emulator::Emulator;
 pub use error::HilError;
 pub use options::{Options, Pace};

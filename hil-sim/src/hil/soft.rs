@@ -74,6 +74,7 @@ pub fn serve(mut wire: impl Wire) -> io::Result<()> {
             next_report += std::time::Duration::from_secs(1);
             send(&mut outbox, &Server::heartbeat(&autopilot));
             send(&mut outbox, &Server::current_mode(&autopilot));
+            send(&mut outbox, &Server::landed_state(&autopilot));
             send(&mut outbox, &server.counters(&autopilot, 0));
         }
         while let Some(news) = server.news(&autopilot) {

@@ -17,6 +17,8 @@ pub struct Statistics {
     pub reconnections: u64,
     /// Real time: periods in which no command came.
     pub late: u64,
+    /// Real time: how far this program was behind the clock at most, s.
+    pub behind_s: f64,
     /// Bits of `LOAD_FAULT` that stood in any answer.
     pub faults: u32,
     /// What the target had to say.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use autopilot::{Setting, Settings};
-use controller::{Command, Margins, Mode, State, Vector3};
+use controller::{Command, Margins, Measured, Mode, Request, State, Uav, Vector3};
 use link::MavMessage;
 use link::dialect::*;
 use rig::{Refused, parameter, run};
@@ -13,12 +13,27 @@ use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
 
+/// How its first state finds the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Begin {
+    /// As any other.
+    Begun,
+    /// On the path, with this ζ.
+    On([f64; 4]),
+    /// On the ground.
+    Standing,
+}
+
 /// A target that is ready to fly.
 pub struct Target {
     line: Line,
     sequence: u32,
     period: Duration,
-    start: Option<[f64; 4]>,
+    begin: Begin,
+    /// What was asked for last.
+    request: Request,
+    /// It has landed, and is disarmed.
+    is_down: bool,
     reference_rate: f64,
     /// Largest thrust, and largest torques.
     limits: (f32, [f32; 3]),
@@ -63,7 +78,9 @@ impl Target {
             line,
             sequence: 0,
             period: Duration::ZERO,
-            start: None,
+            begin: Begin::Begun,
+            request: Request::Idle,
+            is_down: false,
             reference_rate: 0.0,
             limits: (0.0, [0.0; 3]),
             zeta: [0.0; 4],
@@ -129,15 +146,55 @@ impl Target {
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
         let unsupported = |refused: Refused<f32>| HilError::Unsupported(refused.to_string());
         settings.set(Setting::DRIVE, simulate).map_err(unsupported)?;
+        // What the vehicle can give has been compared with what its path asks for.
+        settings.set(Setting::ARMING_THRUST, 1.0).map_err(unsupported)?;
         // With the states that ask for it.
         settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
         self.arm(false)?;
         self.configure(&settings)?;
         self.arm(true)?;
         (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
-        (self.zeta, self.start, self.command) = ([0.0; 4], None, None);
+        (self.zeta, self.begin, self.command) = ([0.0; 4], Begin::Begun, None);
+        (self.request, self.is_down) = (Request::Idle, false);
         self.epoch = Instant::now();
         Ok(())
+    }
+
+    /// Its next state finds the vehicle on the ground, from where what is asked for takes off.
+    pub fn stand(&mut self) {
+        self.begin = Begin::Standing;
+    }
+
+    /// The command for the hold that begins at `t_s`, from what is measured then, of a target that is
+    /// asked for `request`. Once it has landed, that is none.
+    ///
+    /// # Errors
+    /// The target's, or the line's.
+    pub fn fly(&mut self, measured: &Measured<'_, f64>, request: Request, t_s: f64) -> Result<Decision, HilError> {
+        let asks_itself = matches!(self.begin, Begin::On(_)) && request == Request::Follow;
+        if self.request != request && !asks_itself && !self.is_down {
+            self.ask_for(request)?;
+        }
+        self.request = request;
+        let decision = match self.line.options().pace {
+            _ if self.is_down => return Ok(down()),
+            Pace::Lockstep => self.lockstep(measured, t_s),
+            Pace::RealTime => self.real_time(measured, t_s),
+        }?;
+        self.is_down = decision.mode == Mode::Off;
+        Ok(decision)
+    }
+
+    /// Asks for a mode.
+    fn ask_for(&mut self, request: Request) -> Result<(), HilError> {
+        let mode = match request {
+            Request::Follow => LoadMode::LOAD_MODE_FOLLOW,
+            Request::Hold => LoadMode::LOAD_MODE_HOLD,
+            Request::Land => LoadMode::LOAD_MODE_LAND,
+            _ => LoadMode::LOAD_MODE_IDLE,
+        };
+        let param1 = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8;
+        self.ordered(MavCmd::MAV_CMD_DO_SET_MODE, [param1.into(), mode as u32 as f32])
     }
 
     /// Rotors off.
@@ -192,11 +249,17 @@ impl Target {
     }
 
     fn arm(&mut self, on: bool) -> Result<(), HilError> {
-        let command = MavCmd::MAV_CMD_COMPONENT_ARM_DISARM as u16;
+        // In flight too.
+        let force = if on { 0.0 } else { 21196.0 };
+        self.ordered(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, [f32::from(u8::from(on)), force])
+    }
+
+    /// A command, accepted.
+    fn ordered(&mut self, command: MavCmd, [param1, param2]: [f32; 2]) -> Result<(), HilError> {
+        let command = command as u16;
         let request = MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
-            param1: f32::from(u8::from(on)),
-            // In flight too.
-            param2: if on { 0.0 } else { 21196.0 },
+            param1,
+            param2,
             command,
             target_system: link::CONTROLLER.0,
             target_component: link::CONTROLLER.1,
@@ -209,28 +272,34 @@ impl Target {
         if result == MavResult::MAV_RESULT_ACCEPTED as u8 {
             return Ok(());
         }
-        Err(HilError::NotArmed(self.line.statistics.texts.last().cloned().unwrap_or_default()))
+        Err(HilError::Refused(self.line.statistics.texts.last().cloned().unwrap_or_default()))
     }
 
-    fn frame(&mut self, state: &State<f64>, t_s: f64) -> LOAD_STATE_DATA {
+    fn frame(&mut self, measured: &Measured<'_, f64>, t_s: f64) -> LOAD_STATE_DATA {
         self.sequence = self.sequence.wrapping_add(1);
-        let mut frame = link::state_frame(&state.cast());
+        let (state, uav) = (measured.state.map(State::cast), measured.uav.map(Uav::cast));
+        let specific_force = measured.specific_force.map(|force| force.map(|x| x as f32));
+        let mut frame = link::measured_frame(&Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force });
         // A millionth of a second finer than any control period; 0 would be no time.
         frame.time_usec = (t_s * 1e6).round() as u64 + 1;
         frame.sequence = self.sequence;
         let is_logged = ((t_s * self.rate_hz).round() as u64).is_multiple_of(self.log_every);
         frame.telemetry = u8::from(is_logged && self.line.options().telemetry);
         frame.reference_phase = ((self.reference_rate * t_s) % std::f64::consts::TAU) as f32;
-        if let Some(zeta) = self.start.take() {
-            frame.action = LoadAction::LOAD_ACTION_START;
-            frame.zeta = zeta.map(|z| z as f32);
-            self.zeta = frame.zeta.map(f64::from);
+        match std::mem::replace(&mut self.begin, Begin::Begun) {
+            Begin::Begun => {}
+            Begin::Standing => frame.action = LoadAction::LOAD_ACTION_STAND,
+            Begin::On(zeta) => {
+                frame.action = LoadAction::LOAD_ACTION_START;
+                frame.zeta = zeta.map(|z| z as f32);
+                self.zeta = frame.zeta.map(f64::from);
+            }
         }
         frame
     }
 
-    fn lockstep(&mut self, state: &State<f64>, t_s: f64) -> Result<Decision, HilError> {
-        let frame = self.frame(state, t_s);
+    fn lockstep(&mut self, measured: &Measured<'_, f64>, t_s: f64) -> Result<Decision, HilError> {
+        let frame = self.frame(measured, t_s);
         let sequence = frame.sequence;
         let is_asked = frame.telemetry != 0;
         let telemetry = std::cell::Cell::new(None);
@@ -249,11 +318,15 @@ impl Target {
         self.decide(&command, telemetry.as_ref())
     }
 
-    fn real_time(&mut self, state: &State<f64>, t_s: f64) -> Result<Decision, HilError> {
-        let frame = self.frame(state, t_s);
+    fn real_time(&mut self, measured: &Measured<'_, f64>, t_s: f64) -> Result<Decision, HilError> {
+        let frame = self.frame(measured, t_s);
         let due = self.epoch + Duration::from_secs_f64(t_s);
         let begun = Instant::now();
         let first = self.command.is_none();
+        if !first {
+            let behind_s = begun.saturating_duration_since(due).as_secs_f64();
+            self.line.statistics.behind_s = self.line.statistics.behind_s.max(behind_s);
+        }
         let sequence = frame.sequence;
         let question = MavMessage::LOAD_STATE(frame);
         // The first command is waited for; then what has come by the end of the period is what
@@ -348,20 +421,29 @@ impl Target {
     }
 }
 
+/// Rotors off, on the ground.
+fn down() -> Decision {
+    Decision {
+        command: Command::zero(),
+        zeta: [0.0; 4],
+        mode: Mode::Off,
+        fault: None,
+        disturbance: None,
+        telemetry: None,
+    }
+}
+
 impl Answers for Target {
     fn start(&mut self, _: &State<f64>, zeta: [f64; 4]) {
-        self.start = Some(zeta);
+        self.begin = Begin::On(zeta);
     }
 
     fn take_over(&mut self, _: &State<f64>, _: &Command<f64>) {
-        self.start = Some([0.0; 4]);
+        self.begin = Begin::On([0.0; 4]);
     }
 
     fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        let answer = match self.line.options().pace {
-            Pace::Lockstep => self.lockstep(state, t_s),
-            Pace::RealTime => self.real_time(state, t_s),
-        };
+        let answer = self.fly(&Measured::from(state), Request::Follow, t_s);
         answer.map_err(|error| self.failure = Some(error)).ok()
     }
 }
@@ -371,6 +453,7 @@ fn mode(mode: LoadMode) -> Mode {
     match mode {
         LoadMode::LOAD_MODE_OFF => Mode::Off,
         LoadMode::LOAD_MODE_IDLE => Mode::Idle,
+        LoadMode::LOAD_MODE_TAKEOFF => Mode::TakeOff,
         LoadMode::LOAD_MODE_ENGAGE => Mode::Join,
         LoadMode::LOAD_MODE_FOLLOW => Mode::Follow,
         LoadMode::LOAD_MODE_HOLD => Mode::Hold,
