@@ -22,12 +22,14 @@ use defmt_rtt as _;
 mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use autopilot::{Answer, Autopilot, Boot, Drive, Next, Server};
+    use autopilot::{Answer, Autopilot, Boot, Drive, Next, NotKept, Server, Store};
     use heapless::{Deque, Vec};
     use link::dialect::LOAD_STATE_DATA;
     use link::{Decoder, Encoder, MavMessage};
 
-    use crate::board::{self, Board, ControlTimer as _, Led as _, Rotors as _, Serial as _, Watchdog as _};
+    use crate::board::{
+        self, Board, ControlTimer as _, Kill as _, Led as _, Rotors as _, Serial as _, Watchdog as _,
+    };
     use crate::clock::{self, Clock};
 
     /// Bytes that wait to be sent: a parameter list comes one by one, so this is some ten frames.
@@ -54,6 +56,8 @@ mod app {
     struct Local {
         timer: board::Timer,
         rotors: board::RotorOutputs,
+        kill: board::KillPin,
+        store: Option<Store<board::Memory>>,
         serial: board::SerialPort,
         decoder: Decoder,
         led: board::StatusLed,
@@ -83,14 +87,14 @@ mod app {
 
     #[init]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let Board { boot, mut timer, rotors, serial, led, watchdog } = board::start();
+        let Board { boot, mut timer, rotors, serial, led, kill, settings, store, watchdog } = board::start();
         clock::start(cx.core.SYST, boot.core_hz);
         let Boot { core_hz, by_watchdog, internal_clock, watchdog_resets } = boot;
         defmt::info!("{=u32} Hz, crystal: {=bool}", core_hz, !internal_clock);
         if by_watchdog {
             defmt::error!("reset by the watchdog, {=u32} times since power-on", watchdog_resets);
         }
-        let autopilot = Autopilot::new(boot);
+        let autopilot = Autopilot::with(settings, boot);
         let server = Server::new();
         let mut outbox = Outbox { encoder: Encoder::new(link::CONTROLLER), bytes: Deque::new(), lost: 0 };
         server.greet(&autopilot, &mut |message| outbox.send(&message));
@@ -98,7 +102,7 @@ mod app {
         board::pend_link();
         (
             Shared { autopilot, server, outbox, frame: None, answer: None },
-            Local { timer, rotors, serial, decoder: Decoder::new(), led, watchdog },
+            Local { timer, rotors, kill, store, serial, decoder: Decoder::new(), led, watchdog },
         )
     }
 
@@ -120,13 +124,14 @@ mod app {
         }
     }
 
-    #[task(binds = TIM2, priority = 3, shared = [autopilot, frame, answer], local = [timer, rotors, period_s: f32 = 0.0])]
+    #[task(binds = TIM2, priority = 3, shared = [autopilot, frame, answer], local = [timer, rotors, kill, period_s: f32 = 0.0])]
     fn control(cx: control::Context) {
-        let control::LocalResources { timer, rotors, period_s, .. } = cx.local;
+        let control::LocalResources { timer, rotors, kill, period_s, .. } = cx.local;
         CONTROL_LIVES.store(true, Ordering::Relaxed);
         let due = timer.take_tick();
         let start = Clock::now();
         (cx.shared.autopilot, cx.shared.frame, cx.shared.answer).lock(|autopilot, frame, pending| {
+            autopilot.sense_kill_pin(kill.is_high());
             let lockstep = autopilot.drive() == Drive::Lockstep;
             let answer = match frame.take() {
                 Some(frame) if lockstep => Some(autopilot.lockstep(&frame)),
@@ -154,9 +159,9 @@ mod app {
         });
     }
 
-    #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder])]
+    #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder, store])]
     fn exchange(cx: exchange::Context) {
-        let exchange::LocalResources { serial, decoder, .. } = cx.local;
+        let exchange::LocalResources { serial, decoder, store, .. } = cx.local;
         let exchange::SharedResources { mut autopilot, mut server, mut outbox, mut frame, mut answer, .. } =
             cx.shared;
 
@@ -176,8 +181,15 @@ mod app {
                         // Preempts this task here and now.
                         board::pend_control();
                     }
-                    // No board of these has a memory for parameters yet.
-                    Next::Store(_) => {}
+                    Next::Store(index) => {
+                        let kept = autopilot.lock(|autopilot| match store {
+                            Some(store) => store.keep(autopilot.settings(), index),
+                            None => Err(NotKept::NoMemory),
+                        });
+                        if let Err(why) = kept {
+                            let _ = replies.push(Server::not_kept(why));
+                        }
+                    }
                     Next::Reboot => cortex_m::peripheral::SCB::sys_reset(),
                 }
                 outbox.lock(|outbox| replies.iter().for_each(|reply| outbox.send(reply)));
@@ -217,12 +229,18 @@ mod app {
         let report::SharedResources { mut autopilot, mut server, mut outbox, .. } = cx.shared;
         cx.local.led.toggle();
         let lost = outbox.lock(|outbox| outbox.lost);
-        let (heartbeat, mode, counters) = (&mut autopilot, &mut server).lock(|autopilot, server| {
-            (Server::heartbeat(autopilot), Server::current_mode(autopilot), server.counters(autopilot, lost))
+        let (heartbeat, mode, landed, counters) = (&mut autopilot, &mut server).lock(|autopilot, server| {
+            (
+                Server::heartbeat(autopilot),
+                Server::current_mode(autopilot),
+                Server::landed_state(autopilot),
+                server.counters(autopilot, lost),
+            )
         });
         outbox.lock(|outbox| {
             outbox.send(&heartbeat);
             outbox.send(&mode);
+            outbox.send(&landed);
             outbox.send(&counters);
         });
         board::pend_link();

@@ -4,10 +4,11 @@
 //!
 //! - `pac`: interrupts `TIM2` (control), `USART1` (link) and `SPI1` (free, for the program's own
 //!   use);
-//! - the types `Timer`, `RotorOutputs`, `SerialPort`, `StatusLed` and `Dog`, with the traits below;
+//! - the types `Timer`, `RotorOutputs`, `SerialPort`, `StatusLed`, `KillPin`, `Memory` and `Dog`, with
+//!   the traits below;
 //! - `start`, `stop_rotors` (in any state, interrupts off) and `reset`.
 
-use autopilot::Boot;
+use autopilot::{Boot, Flash, Settings, Store};
 use embedded_hal::pwm::SetDutyCycle;
 
 #[cfg(feature = "mps2")]
@@ -36,6 +37,12 @@ pub struct Board {
     pub serial: SerialPort,
     /// The status LED.
     pub led: StatusLed,
+    /// The kill pin.
+    pub kill: KillPin,
+    /// The parameters as they were kept, and what keeps them, where there is something.
+    pub settings: Settings,
+    /// The same.
+    pub store: Option<Store<Memory>>,
     /// The watchdog, running.
     pub watchdog: Dog,
 }
@@ -72,6 +79,42 @@ pub trait Serial {
 pub trait Led {
     /// On if it was off.
     fn toggle(&mut self);
+}
+
+/// The pin that stops the rotors, pulled down: a broken wire stops nothing.
+pub trait Kill {
+    /// Whether it is high.
+    fn is_high(&self) -> bool;
+}
+
+/// The parameters in `memory`, and the memory to keep others in. Before the watchdog: it may erase,
+/// for seconds.
+#[cfg_attr(feature = "mps2", allow(dead_code))]
+pub fn recall(memory: Memory) -> (Settings, Option<Store<Memory>>) {
+    let mut settings = Settings::default();
+    let store = Store::open(memory, &mut settings).ok();
+    (settings, store)
+}
+
+/// Of a board that keeps no parameters.
+#[cfg(not(feature = "stm32f405"))]
+pub struct NoMemory(());
+
+#[cfg(not(feature = "stm32f405"))]
+impl Flash for NoMemory {
+    const RECORDS: usize = 0;
+
+    fn read(&self, _: usize, _: usize) -> [u8; autopilot::RECORD] {
+        [0xFF; autopilot::RECORD]
+    }
+
+    fn write(&mut self, _: usize, _: usize, _: &[u8; autopilot::RECORD]) -> Result<(), autopilot::FlashFault> {
+        Err(autopilot::FlashFault)
+    }
+
+    fn erase(&mut self, _: usize) -> Result<(), autopilot::FlashFault> {
+        Err(autopilot::FlashFault)
+    }
 }
 
 /// Resets the board when it is not fed for half a second.

@@ -3,9 +3,9 @@
 //!
 //! There are no rotors, LED or watchdog. Register names are those of Arm's CMSDK (DDI 0479).
 
-use autopilot::Boot;
+use autopilot::{Boot, Settings};
 
-use super::{Board, ControlTimer, Led, Rotors, Serial, Watchdog};
+use super::{Board, ControlTimer, Kill, Led, NoMemory, Rotors, Serial, Watchdog};
 
 /// Core and peripheral clock, Hz.
 const CLOCK_HZ: u32 = 25_000_000;
@@ -177,6 +177,18 @@ impl Led for StatusLed {
     fn toggle(&mut self) {}
 }
 
+/// No kill pin.
+pub struct KillPin(());
+
+impl Kill for KillPin {
+    fn is_high(&self) -> bool {
+        false
+    }
+}
+
+/// No memory for parameters.
+pub type Memory = NoMemory;
+
 /// No watchdog.
 pub struct Dog(());
 
@@ -195,6 +207,9 @@ pub fn start() -> Board {
         rotors: RotorOutputs(()),
         serial: SerialPort { lost: 0 },
         led: StatusLed(()),
+        kill: KillPin(()),
+        settings: Settings::default(),
+        store: None,
         watchdog: Dog(()),
     }
 }

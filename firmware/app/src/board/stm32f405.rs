@@ -5,12 +5,15 @@
 //! | rotors front right, rear left, front left, rear right | PA6, PA7, PB0, PB1 (TIM3, 400 Hz, 1 to 2 ms) |
 //! | link, 921,600 baud 8N1 | PA9 out, PA10 in (USART1) |
 //! | status LED | PC12 |
+//! | kill: high stops the rotors | PA0 (its button) |
+//!
+//! Parameters are kept in the last two sectors of flash, which the memory map leaves out.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicU32, Ordering, fence};
 
 use autopilot::Boot;
-use stm32f4xx_hal::gpio::{Output, Pin};
+use stm32f4xx_hal::gpio::{Input, Output, Pin};
 use stm32f4xx_hal::nb;
 pub use stm32f4xx_hal::pac;
 use stm32f4xx_hal::prelude::*;
@@ -19,7 +22,13 @@ use stm32f4xx_hal::serial::{self, Rx, RxISR, RxListen, Tx, TxListen};
 use stm32f4xx_hal::timer::{CounterUs, Event, Flag, PwmChannel};
 use stm32f4xx_hal::watchdog::IndependentWatchdog;
 
-use super::{Board, ControlTimer, Led, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS, Watchdog, set_pulse};
+use super::{
+    Board, ControlTimer, Kill, Led, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS, Watchdog, recall, set_pulse,
+};
+
+mod flash;
+
+pub use flash::Memory;
 
 const CRYSTAL_MHZ: u32 = 8;
 const CORE_MHZ: u32 = 168;
@@ -72,6 +81,15 @@ pub struct StatusLed(Pin<'C', 12, Output>);
 impl Led for StatusLed {
     fn toggle(&mut self) {
         self.0.toggle();
+    }
+}
+
+/// PA0.
+pub struct KillPin(Pin<'A', 0, Input>);
+
+impl Kill for KillPin {
+    fn is_high(&self) -> bool {
+        self.0.is_high()
     }
 }
 
@@ -187,6 +205,8 @@ pub fn start() -> Board {
     let (config, internal_clock) = clocks(&dp.RCC);
     let mut rcc = dp.RCC.freeze(config);
 
+    let (settings, store) = recall(Memory::new(dp.FLASH));
+
     let mut watchdog = IndependentWatchdog::new(dp.IWDG);
     watchdog.start(WATCHDOG_MS.millis());
 
@@ -225,6 +245,9 @@ pub fn start() -> Board {
         rotors,
         serial: SerialPort { tx, rx, ring, lost: 0 },
         led: StatusLed(gpioc.pc12.into_push_pull_output()),
+        kill: KillPin(gpioa.pa0.into_pull_down_input()),
+        settings,
+        store,
         watchdog: Dog(watchdog),
     }
 }

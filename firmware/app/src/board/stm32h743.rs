@@ -6,6 +6,9 @@
 //! | rotors front right, rear left, front left, rear right | PA6, PC7, PC8, PC9 (TIM3, 400 Hz, 1 to 2 ms) |
 //! | link, 921,600 baud 8N1 | PB6 out, PB7 in (USART1) |
 //! | status LED | PB0 |
+//! | kill: high stops the rotors | PC13 (its user button) |
+//!
+//! Parameters are not kept.
 //!
 //! Its HAL knows embedded-hal 0.2 only; [`Pulse`] is the step to 1.0.
 
@@ -13,9 +16,9 @@ use core::convert::Infallible;
 use core::sync::atomic::{AtomicU32, Ordering};
 use core::time::Duration;
 
-use autopilot::Boot;
+use autopilot::{Boot, Settings};
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
-use stm32h7xx_hal::gpio::{Output, Pin};
+use stm32h7xx_hal::gpio::{Input, Output, Pin};
 use stm32h7xx_hal::hal::PwmPin;
 use stm32h7xx_hal::hal::serial::{Read, Write};
 use stm32h7xx_hal::independent_watchdog::IndependentWatchdog;
@@ -26,7 +29,9 @@ use stm32h7xx_hal::rcc::ResetReason;
 use stm32h7xx_hal::serial::{Rx, Tx};
 use stm32h7xx_hal::timer::{Event, Timer as HalTimer};
 
-use super::{Board, ControlTimer, Led, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS, Watchdog, set_pulse};
+use super::{
+    Board, ControlTimer, Kill, Led, NoMemory, PULSE_RATE_HZ, Rotors, Serial, WATCHDOG_MS, Watchdog, set_pulse,
+};
 
 const CRYSTAL_MHZ: u32 = 8;
 const CORE_MHZ: u32 = 400;
@@ -100,6 +105,18 @@ impl Led for StatusLed {
         self.0.toggle();
     }
 }
+
+/// PC13.
+pub struct KillPin(Pin<'C', 13, Input>);
+
+impl Kill for KillPin {
+    fn is_high(&self) -> bool {
+        self.0.is_high()
+    }
+}
+
+/// No memory for parameters.
+pub type Memory = NoMemory;
 
 /// The independent watchdog, on its own oscillator.
 pub struct Dog(IndependentWatchdog);
@@ -202,6 +219,9 @@ pub fn start() -> Board {
         rotors,
         serial: SerialPort { tx, rx, lost: 0 },
         led: StatusLed(gpiob.pb0.into_push_pull_output()),
+        kill: KillPin(gpioc.pc13.into_pull_down_input()),
+        settings: Settings::default(),
+        store: None,
         watchdog: Dog(watchdog),
     }
 }
