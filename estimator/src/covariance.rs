@@ -2,9 +2,31 @@
 
 use model::Real;
 
-/// A symmetric, positive matrix: both halves are kept, and written together.
+/// Repeats a block for the numbers from 0 up to a bound below 16, each as a constant: an index that
+/// can't fail, no loop, and nothing loaded twice. Half of what a filter costs is in such blocks.
+macro_rules! unrolled {
+    ($i:ident < $bound:expr, $body:block) => {
+        $crate::covariance::unrolled!(@ $i $bound, $body, 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14)
+    };
+    (@ $i:ident $bound:expr, $body:block, $($number:literal)*) => {{
+        $({
+            let $i: usize = $number;
+            if $i < $bound $body
+        })*
+    }};
+}
+pub(crate) use unrolled;
+
+/// A symmetric, positive matrix of N rows: its lower triangle, row by row, SIZE = N (N + 1)/2
+/// entries.
 #[derive(Clone, Debug)]
-pub(crate) struct Covariance<T, const N: usize>(pub(crate) [[T; N]; N]);
+pub(crate) struct Covariance<T, const N: usize, const SIZE: usize>(pub(crate) [T; SIZE]);
+
+/// Where the entry of row `i` and column `j` stands, in either order.
+#[inline(always)]
+pub(crate) const fn at(i: usize, j: usize) -> usize {
+    if i < j { j * (j + 1) / 2 + i } else { i * (i + 1) / 2 + j }
+}
 
 /// One scalar z = h·x + noise, with noise that may be correlated with x.
 #[derive(Clone, Copy, Debug)]
@@ -44,16 +66,41 @@ const BOUND: f64 = 5.0;
 /// rather than one.
 const SHARPEST: f64 = 1e-3;
 
-impl<T: Real, const N: usize> Covariance<T, N> {
+impl<T: Real, const N: usize, const SIZE: usize> Covariance<T, N, SIZE> {
+    const IS_TRIANGLE: () = assert!(2 * SIZE == N * (N + 1) && N < 16);
+
     /// Independent components of these standard deviations.
     pub(crate) fn diagonal(deviations: &[T; N]) -> Self {
-        let mut matrix = Self([[T::zero(); N]; N]);
-        for (i, (row, &deviation)) in matrix.0.iter_mut().zip(deviations).enumerate() {
-            if let Some(entry) = row.get_mut(i) {
-                *entry = deviation * deviation;
-            }
+        let () = Self::IS_TRIANGLE;
+        let mut matrix = Self([T::zero(); SIZE]);
+        for (i, &deviation) in deviations.iter().enumerate() {
+            matrix.set(i, i, deviation * deviation);
         }
         matrix
+    }
+
+    /// An entry; zero outside.
+    #[inline(always)]
+    pub(crate) fn get(&self, i: usize, j: usize) -> T {
+        self.0.get(at(i, j)).copied().unwrap_or_else(T::zero)
+    }
+
+    #[inline(always)]
+    fn set(&mut self, i: usize, j: usize, value: T) {
+        if let Some(entry) = self.0.get_mut(at(i, j)) {
+            *entry = value;
+        }
+    }
+
+    /// Adds to the variance of component `i`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, i: usize, variance: T) {
+        self.set(i, i, self.get(i, i) + variance);
+    }
+
+    /// Both halves.
+    pub(crate) fn full(&self) -> [[T; N]; N] {
+        core::array::from_fn(|i| core::array::from_fn(|j| self.get(i, j)))
     }
 
     /// Takes in one scalar, with an `innovation` that is less what its batch has corrected already:
@@ -71,29 +118,21 @@ impl<T: Real, const N: usize> Covariance<T, N> {
         let Scalar { h, correlation, variance, .. } = scalar;
         let mut g = *correlation;
         let mut s_prior = T::zero();
-        for ((row, g), (&h_i, &c)) in self.0.iter().zip(&mut g).zip(h.iter().zip(correlation)) {
-            *g += dot(row, h);
-            s_prior += h_i * (*g + c);
-        }
+        unrolled!(i < N, {
+            let mut sum = g[i];
+            unrolled!(j < N, { sum += self.0[at(i, j)] * h[j] });
+            s_prior += h[i] * (sum + g[i]);
+            g[i] = sum;
+        });
         let s = (s_prior + *variance).max(s_prior * T::lit(1.0 + SHARPEST));
         let per_s = T::one() / s;
-        let kept = considered.and_then(|i| self.0.get(i)?.get(i).copied());
-        for i in 0..N {
+        let kept = considered.map(|i| (i, self.get(i, i)));
+        unrolled!(i < N, {
             let scaled = g[i] * per_s;
-            for j in 0..N {
-                // A bound that the compiler sees: an index that can't fail.
-                if j > i {
-                    break;
-                }
-                let entry = self.0[i][j] - scaled * g[j];
-                self.0[i][j] = entry;
-                self.0[j][i] = entry;
-            }
-        }
-        if let (Some(i), Some(kept)) = (considered, kept)
-            && let Some(entry) = self.0.get_mut(i).and_then(|row| row.get_mut(i))
-        {
-            *entry = kept;
+            unrolled!(j < i + 1, { self.0[at(i, j)] -= scaled * g[j] });
+        });
+        if let Some((i, kept)) = kept {
+            self.set(i, i, kept);
         }
         let deviation = s.sqrt();
         let bounded = innovation.clamp(-deviation * T::lit(BOUND), deviation * T::lit(BOUND));
@@ -101,24 +140,18 @@ impl<T: Real, const N: usize> Covariance<T, N> {
         Absorbed { correction: g.map(|g| g * scale), surprise: innovation * innovation * per_s }
     }
 
-    /// Keeps variances above these, which rounding could take to zero.
-    #[inline]
-    pub(crate) fn floor(&mut self, least: &[T; N]) {
-        for i in 0..N {
-            self.0[i][i] = self.0[i][i].max(least[i]);
-        }
+    /// Keeps variances above `least`, which rounding could take to zero.
+    #[inline(always)]
+    pub(crate) fn floor(&mut self, least: T) {
+        unrolled!(i < N, { self.0[at(i, i)] = self.0[at(i, i)].max(least) });
     }
 
     /// Whatever is less certain than such a variance is not known at all: it keeps that variance,
     /// and hangs together with nothing.
     pub(crate) fn limit(&mut self, most: &[(usize, T)]) {
         for &(component, most) in most {
-            let is_beyond = self
-                .0
-                .get(component)
-                .and_then(|row| row.get(component))
-                .is_some_and(|&entry| entry > most || !entry.is_finite());
-            if is_beyond {
+            let entry = self.get(component, component);
+            if entry > most || !entry.is_finite() {
                 self.forget(component, most);
             }
         }
@@ -127,16 +160,9 @@ impl<T: Real, const N: usize> Covariance<T, N> {
     /// Forgets all that is known of a component but for its `variance`.
     pub(crate) fn forget(&mut self, component: usize, variance: T) {
         for i in 0..N {
-            if let Some(entry) = self.0[i].get_mut(component) {
-                *entry = T::zero();
-            }
+            self.set(component, i, T::zero());
         }
-        if let Some(row) = self.0.get_mut(component) {
-            *row = [T::zero(); N];
-            if let Some(entry) = row.get_mut(component) {
-                *entry = variance;
-            }
-        }
+        self.set(component, component, variance);
     }
 }
 

@@ -2,10 +2,14 @@
 
 use model::{Matrix3, OutOfRange, Real, Vector3};
 
-/// ω̇ × r + ω × (ω × r): what a point at `lever` feels beyond the centre of mass, body axes, m/s².
+/// S of S r = ω̇ × r + ω × (ω × r): what a point at r feels beyond the centre of mass, body axes,
+/// 1/s².
 #[inline(always)]
-pub(crate) fn swung<T: Real>(omega: &Vector3<T>, turning: &Vector3<T>, lever: &Vector3<T>) -> Vector3<T> {
-    turning.cross(lever) + omega * omega.dot(lever) - lever * omega.dot(omega)
+pub(crate) fn swing<T: Real>(omega: &Vector3<T>, turning: &Vector3<T>) -> Matrix3<T> {
+    let (w, t) = (omega, turning);
+    let [xx, yy, zz] = [w.x * w.x, w.y * w.y, w.z * w.z];
+    let [xy, yz, zx] = [w.x * w.y, w.y * w.z, w.z * w.x];
+    Matrix3::new(-(yy + zz), xy - t.z, zx + t.y, xy + t.z, -(zz + xx), yz - t.x, zx - t.y, yz + t.x, -(xx + yy))
 }
 
 /// A lever arm within ±2 m.

@@ -81,8 +81,8 @@ fn hours_of_hovering() {
         let motion = navigation.step(Some(&imu));
         let estimate = payload.step(Some(&motion), Some(3.0 * G));
         if step % 5000 == 4999 {
-            worst[0] = worst[0].min(least_pivot(navigation.covariance()));
-            worst[1] = worst[1].min(least_pivot(payload.covariance()));
+            worst[0] = worst[0].min(least_pivot(&navigation.covariance()));
+            worst[1] = worst[1].min(least_pivot(&payload.covariance()));
             off = off.max((motion.position - start.position).amax());
             swing = swing.max(estimate.state.rod.x.abs().max(estimate.state.rod.y.abs()));
         }

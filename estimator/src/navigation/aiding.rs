@@ -12,9 +12,9 @@
 //! attitude:  δθ
 //! ```
 
-use model::{Real, Vector3};
+use model::{Matrix3, Real, Vector3};
 
-use super::strapdown::{ERRORS, Strapdown, index};
+use super::strapdown::{ERRORS, Moved, Strapdown, index};
 use crate::covariance::Scalar;
 use crate::lever::axes;
 
@@ -102,18 +102,25 @@ impl<T: Real> Waiting<T> {
         self.count += T::one();
     }
 
-    /// The state has moved by `error`: so have the innovations against it.
-    pub(crate) fn shift(&mut self, kind: Kind, error: &[T; ERRORS], state: &Strapdown<T>, clock: &Clock<T>) {
+    /// The state has moved: so have the innovations against it.
+    pub(crate) fn shift(&mut self, kind: Kind, moved: &Moved<T>, attitude: &Matrix3<T>, clock: &Clock<T>) {
         if self.is_empty() {
             return;
         }
-        for axis in 0..kind.scalars() {
-            let scalar = self.scalar(kind, axis, state, clock);
-            let moved = crate::covariance::dot(&scalar.h, error) * self.count;
-            if let Some(sum) = self.sum.get_mut(axis) {
-                *sum -= moved;
+        let Moved { position, velocity, acceleration, turn } = moved;
+        let age = self.age / self.count + clock.passed(self.since);
+        let only = |along: T| Vector3::new(along, T::zero(), T::zero());
+        let by = match kind {
+            Kind::Position => {
+                let lever = turn.cross(&(attitude * self.lever));
+                position - (velocity - acceleration * (age * T::lit(0.5))) * age + lever
             }
-        }
+            Kind::Velocity => velocity - acceleration * age + turn.cross(&(attitude * self.lever)),
+            Kind::Attitude => *turn,
+            Kind::Height => only(-position.z),
+            Kind::Heading => only(turn.dot(&heading(attitude))),
+        };
+        self.sum -= by * self.count;
     }
 
     /// Row `axis` of the mean.
@@ -153,11 +160,10 @@ impl<T: Real> Waiting<T> {
                 return scalar;
             }
             Kind::Heading => {
-                let [b1, ..] = axes(&state.attitude);
-                let tilt = -b1.z / (b1.x * b1.x + b1.y * b1.y).max(T::lit(0.01));
-                set(index::ATTITUDE, tilt * b1.x);
-                set(index::ATTITUDE + 1, tilt * b1.y);
-                set(index::ATTITUDE + 2, T::one());
+                let along = heading(&state.attitude);
+                set(index::ATTITUDE, along.x);
+                set(index::ATTITUDE + 1, along.y);
+                set(index::ATTITUDE + 2, along.z);
                 return scalar;
             }
             Kind::Attitude => {
@@ -187,6 +193,13 @@ impl Kind {
             Self::Position | Self::Velocity | Self::Attitude => 3,
         }
     }
+}
+
+/// (14), per δθ.
+fn heading<T: Real>(attitude: &Matrix3<T>) -> Vector3<T> {
+    let [b1, ..] = axes(attitude);
+    let tilt = -b1.z / (b1.x * b1.x + b1.y * b1.y).max(T::lit(0.01));
+    Vector3::new(tilt * b1.x, tilt * b1.y, T::one())
 }
 
 /// Row `axis` of −[v]×.

@@ -8,6 +8,8 @@
 //! take turns, so that none that comes often keeps another from its own.
 
 mod aiding;
+#[cfg(test)]
+mod jacobians;
 mod params;
 mod predict;
 mod ring;
@@ -18,11 +20,11 @@ pub use strapdown::Imu;
 
 use model::{Matrix3, OutOfRange, Real, Vector3, is_within};
 
-use crate::covariance::{Covariance, dot};
+use crate::covariance::dot;
 use crate::lever::axes;
 use crate::motion::Motion;
 use aiding::{Clock, Kind, Waiting};
-use predict::Spread;
+use predict::{Covariance, Spread};
 use ring::Ring;
 use strapdown::{ERRORS, Strapdown, index};
 
@@ -99,9 +101,7 @@ pub struct Navigation<T> {
     params: NavigationParams<T>,
     spread: Spread<T>,
     state: Strapdown<T>,
-    covariance: Covariance<T, ERRORS>,
-    /// Largest variances of the biases of gyro and accelerometer.
-    most: [T; 2],
+    covariance: Covariance<T>,
     ring: Ring<T>,
     phase: u8,
     /// Sum of f in N over the half cycle.
@@ -154,7 +154,6 @@ impl<T: Real> Navigation<T> {
         Ok(Self {
             spread: Spread::new(noise, step),
             covariance: Covariance::diagonal(&deviations),
-            most: [g * g, a * a],
             ring: Ring::new(&state.position, &state.velocity, step),
             state,
             phase: 3,
@@ -181,8 +180,8 @@ impl<T: Real> Navigation<T> {
     }
 
     /// The covariance of the errors, in the order (δx, δv, δθ, δb_g, δb_a).
-    pub fn covariance(&self) -> &[[T; ERRORS]; ERRORS] {
-        &self.covariance.0
+    pub fn covariance(&self) -> [[T; ERRORS]; ERRORS] {
+        self.covariance.full()
     }
 
     /// Biases found: of the gyro, rad/s, and of the accelerometer, m/s².
@@ -347,11 +346,9 @@ impl<T: Real> Navigation<T> {
     }
 
     fn is_outlier(&self, innovation: &Vector3<T>, [across, down]: [T; 2]) -> bool {
-        let p = &self.covariance.0;
         [across, across, down].into_iter().enumerate().any(|(axis, deviation)| {
             let square = innovation.get(axis).map_or(T::zero(), |&along| along * along);
-            let variance = p.get(axis).and_then(|row| row.get(axis)).copied().unwrap_or_else(T::zero);
-            square > (deviation * deviation + variance) * T::lit(GATE)
+            square > (deviation * deviation + self.covariance.get(axis, axis)) * T::lit(GATE)
         })
     }
 
@@ -419,36 +416,34 @@ impl<T: Real> Navigation<T> {
 
     /// What it is worth.
     pub fn health(&self) -> NavigationHealth<T> {
-        let p = &self.covariance.0;
+        let both = |at: usize| (self.covariance.get(at, at) + self.covariance.get(at + 1, at + 1)).sqrt();
         NavigationHealth {
-            position_deviation: (p[0][0] + p[1][1]).sqrt(),
-            velocity_deviation: (p[3][3] + p[4][4]).sqrt(),
-            tilt_deviation: (p[6][6] + p[7][7]).sqrt(),
+            position_deviation: both(index::POSITION),
+            velocity_deviation: both(index::VELOCITY),
+            tilt_deviation: both(index::ATTITUDE),
             fix_age: self.fix_age,
             is_blind: self.missing > BLIND,
             resets: self.resets,
         }
     }
 
-    /// Φ P, the first half of the covariance's step.
+    /// The first half of the covariance's step.
     fn spread(&mut self) {
         let mut force = self.force * T::lit(1.0 / f64::from(HALF));
         force.z -= self.params.gravity;
         self.force = Vector3::zeros();
-        self.spread.take(&self.state.attitude, &force);
-        self.spread.rows(&mut self.covariance);
+        self.spread.move_with_attitude(&mut self.covariance, &force);
         self.state.straighten();
         self.ring.push(&self.state.position, &self.state.velocity);
     }
 
-    /// (Φ P) Φᵀ + Q.
+    /// The second half, with its noise.
     fn finish_spread(&mut self) {
-        self.spread.columns(&mut self.covariance, self.most);
+        self.spread.move_with_biases(&mut self.covariance, &self.state.attitude);
         let [v, t] = UNREAD.map(|unread| T::lit(unread) * self.params.period * self.unread);
-        let p = &mut self.covariance.0;
         for i in 0..3 {
-            p[3 + i][3 + i] += v * v;
-            p[6 + i][6 + i] += t * t;
+            self.covariance.add(index::VELOCITY + i, v * v);
+            self.covariance.add(index::ATTITUDE + i, t * t);
         }
         let [x, v, t] = [1e10, 1e6, 10.0].map(T::lit);
         self.covariance.limit(&[(0, x), (1, x), (2, x), (3, v), (4, v), (5, v), (6, t), (7, t), (8, t)]);
@@ -486,10 +481,10 @@ impl<T: Real> Navigation<T> {
 
     /// Ends a batch.
     fn settle(&mut self) {
-        for (kind, waiting) in Kind::ALL.into_iter().zip(&mut self.waiting) {
-            waiting.shift(kind, &self.pending, &self.state, &self.clock);
-        }
         let moved = self.state.inject(&self.pending);
+        for (kind, waiting) in Kind::ALL.into_iter().zip(&mut self.waiting) {
+            waiting.shift(kind, &moved, &self.state.attitude, &self.clock);
+        }
         self.ring.shift(&moved);
         self.pending = [T::zero(); ERRORS];
         self.batch = None;

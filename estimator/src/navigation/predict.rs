@@ -1,24 +1,27 @@
 //! How the errors of navigation spread: P ← Φ P Φᵀ + Q over half a cycle, Φ = 1 + F Δt of (10).
 //!
-//! Rows first, then columns. The columns of the biases stay, so that the rows of all others with
-//! them are known by symmetry; what is left for the columns is the block of position, velocity and
-//! attitude.
+//! Each block of (10) lets three errors move with three others. Taken one after the other, each
+//! part before what it stands on has moved, the blocks make up Φ; and as each is a change of state
+//! of its own, the covariance is whole after every one, so that they have two periods.
 
 use model::{Matrix3, Real, Vector3};
 
 use super::params::NavigationNoise;
 use super::strapdown::{ERRORS, index};
-use crate::covariance::Covariance;
+use crate::covariance::{at, unrolled};
 
-/// Φ's blocks beside ones, and Q, for one step.
+/// The covariance of the fifteen errors.
+pub(crate) type Covariance<T> = crate::covariance::Covariance<T, ERRORS, { ERRORS * (ERRORS + 1) / 2 }>;
+
+/// Q for one step.
 #[derive(Clone, Debug)]
 pub(crate) struct Spread<T> {
     step: T,
     /// Added to the variances of velocity, attitude, gyro's and accelerometer's bias.
     added: [T; 4],
-    /// Of the running step: f Δt in N, and R Δt.
-    force: Vector3<T>,
-    turn: Matrix3<T>,
+    /// Largest variances of the biases of gyro and accelerometer: walks go no further than where
+    /// they started.
+    most: [T; 2],
 }
 
 /// The variance that no component falls below.
@@ -35,79 +38,62 @@ impl<T: Real> Spread<T> {
                 walk(noise.gyro_walk),
                 walk(noise.accelerometer_walk),
             ],
-            force: Vector3::zeros(),
-            turn: Matrix3::zeros(),
+            most: [noise.start_gyro, noise.start_accelerometer].map(|deviation| deviation * deviation),
         }
     }
 
-    /// Φ for an attitude and a specific `force` in N.
-    pub(crate) fn take(&mut self, attitude: &Matrix3<T>, force: &Vector3<T>) {
-        self.force = force * self.step;
-        self.turn = attitude * self.step;
-    }
-
-    /// Φ times a vector, in place: each part before what it stands on has moved.
-    #[inline(always)]
-    fn apply(&self, x: &mut [T; 9], biases: &[T; 6]) {
-        let [g1, g2, g3, a1, a2, a3] = *biases;
-        let (step, f, turn) = (self.step, &self.force, &self.turn);
-        x[0] += step * x[3];
-        x[1] += step * x[4];
-        x[2] += step * x[5];
-        x[3] += f.z * x[7] - f.y * x[8] - (turn.m11 * a1 + turn.m12 * a2 + turn.m13 * a3);
-        x[4] += f.x * x[8] - f.z * x[6] - (turn.m21 * a1 + turn.m22 * a2 + turn.m23 * a3);
-        x[5] += f.y * x[6] - f.x * x[7] - (turn.m31 * a1 + turn.m32 * a2 + turn.m33 * a3);
-        x[6] -= turn.m11 * g1 + turn.m12 * g2 + turn.m13 * g3;
-        x[7] -= turn.m21 * g1 + turn.m22 * g2 + turn.m23 * g3;
-        x[8] -= turn.m31 * g1 + turn.m32 * g2 + turn.m33 * g3;
-    }
-
-    /// Φ P, a column at a time. The covariance is whole again after [`columns`](Self::columns).
+    /// Position moves with velocity, velocity with attitude under the specific `force` in N.
     #[inline(never)]
-    pub(crate) fn rows(&self, covariance: &mut Covariance<T, ERRORS>) {
-        let p = &mut covariance.0;
-        for j in 0..ERRORS {
-            let mut x: [T; 9] = core::array::from_fn(|i| p[i][j]);
-            let biases: [T; 6] = core::array::from_fn(|i| p[9 + i][j]);
-            self.apply(&mut x, &biases);
-            for (row, x) in p.iter_mut().zip(x) {
-                row[j] = x;
-            }
-        }
+    pub(crate) fn move_with_attitude(&self, covariance: &mut Covariance<T>, force: &Vector3<T>) {
+        let (step, f) = (self.step, force * self.step);
+        couple::<T, { index::POSITION }, { index::VELOCITY }>(covariance, |v| v.map(|v| v * step));
+        // −[f]×.
+        couple::<T, { index::VELOCITY }, { index::ATTITUDE }>(covariance, |[x, y, z]| {
+            [f.z * y - f.y * z, f.x * z - f.z * x, f.y * x - f.x * y]
+        });
     }
 
-    /// (Φ P) Φᵀ + Q, a row at a time. `most` are the variances up to which the biases of gyro and
-    /// accelerometer walk.
+    /// Velocity and attitude move with the biases; Q.
     #[inline(never)]
-    pub(crate) fn columns(&self, covariance: &mut Covariance<T, ERRORS>, most: [T; 2]) {
-        let p = &mut covariance.0;
-        for i in 0..index::GYRO {
-            let mut x: [T; 9] = core::array::from_fn(|j| p[i][j]);
-            let biases: [T; 6] = core::array::from_fn(|j| p[i][9 + j]);
-            self.apply(&mut x, &biases);
-            for (entry, x) in p[i].iter_mut().zip(x) {
-                *entry = x;
-            }
-            for (row, bias) in p.iter_mut().skip(index::GYRO).zip(biases) {
-                row[i] = bias;
-            }
-        }
-        // Rounding has made the two halves differ by as much.
-        for i in 0..index::GYRO {
-            for j in i..index::GYRO {
-                p[j][i] = p[i][j];
-            }
-        }
+    pub(crate) fn move_with_biases(&self, covariance: &mut Covariance<T>, attitude: &Matrix3<T>) {
+        let r = attitude * -self.step;
+        let turned = |[x, y, z]: [T; 3]| {
+            [r.m11 * x + r.m12 * y + r.m13 * z, r.m21 * x + r.m22 * y + r.m23 * z, r.m31 * x + r.m32 * y + r.m33 * z]
+        };
+        couple::<T, { index::VELOCITY }, { index::ACCELEROMETER }>(covariance, turned);
+        couple::<T, { index::ATTITUDE }, { index::GYRO }>(covariance, turned);
         let [velocity, attitude, gyro, accelerometer] = self.added;
+        let [most_gyro, most_accelerometer] = self.most;
         for i in 0..3 {
-            p[index::VELOCITY + i][index::VELOCITY + i] += velocity;
-            p[index::ATTITUDE + i][index::ATTITUDE + i] += attitude;
-            for (at, added, most) in [(index::GYRO, gyro, most[0]), (index::ACCELEROMETER, accelerometer, most[1])] {
-                if p[at + i][at + i] < most {
-                    p[at + i][at + i] += added;
+            covariance.add(index::VELOCITY + i, velocity);
+            covariance.add(index::ATTITUDE + i, attitude);
+            for (bias, added, most) in
+                [(index::GYRO, gyro, most_gyro), (index::ACCELEROMETER, accelerometer, most_accelerometer)]
+            {
+                if covariance.get(bias + i, bias + i) < most {
+                    covariance.add(bias + i, added);
                 }
             }
         }
-        covariance.floor(&[T::lit(FLOOR); ERRORS]);
+        covariance.floor(T::lit(FLOOR));
     }
+}
+
+/// P ← (1 + E) P (1 + E)ᵀ, where E adds M times the three errors at `FROM` to those at `TO`.
+#[inline(always)]
+fn couple<T: Real, const TO: usize, const FROM: usize>(covariance: &mut Covariance<T>, m: impl Fn([T; 3]) -> [T; 3]) {
+    let p = &mut covariance.0;
+    // M P of the columns at TO, from the old ones: its transpose is the other half.
+    let before: [[T; 3]; 3] =
+        [0, 1, 2].map(|b| m([p[at(FROM, TO + b)], p[at(FROM + 1, TO + b)], p[at(FROM + 2, TO + b)]]));
+    unrolled!(j < ERRORS, {
+        if j < TO || j >= TO + 3 {
+            let moved = m([p[at(FROM, j)], p[at(FROM + 1, j)], p[at(FROM + 2, j)]]);
+            unrolled!(a < 3, { p[at(TO + a, j)] += moved[a] });
+        }
+    });
+    unrolled!(a < 3, {
+        let after = m([p[at(TO + a, FROM)], p[at(TO + a, FROM + 1)], p[at(TO + a, FROM + 2)]]);
+        unrolled!(b < a + 1, { p[at(TO + a, TO + b)] += before[b][a] + after[b] });
+    });
 }

@@ -11,6 +11,8 @@
 
 use model::{Real, Vector3};
 
+use super::strapdown::Moved;
+
 /// Entries: 0.3 s at 30 ms.
 const ENTRIES: usize = 11;
 
@@ -59,24 +61,30 @@ impl<T: Real> Ring<T> {
 
     /// (x, v) of `age` s ago, between two entries; `now` where that is later than the newest.
     pub(crate) fn at(&self, age: T, now: (Vector3<T>, Vector3<T>)) -> (Vector3<T>, Vector3<T>) {
-        let (mut newer, mut newer_age) = (now, T::zero());
-        let mut then = now;
-        let mut older_age = self.since;
-        for older in &self.entries {
-            let gap = older_age - newer_age;
-            if age >= newer_age && gap > T::zero() {
-                let share = ((age - newer_age) / gap).min(T::one());
-                then = (newer.0 + (older.0 - newer.0) * share, newer.1 + (older.1 - newer.1) * share);
-            }
-            newer = *older;
-            newer_age = older_age;
-            older_age += self.spacing;
+        let mut newer_age = self.since;
+        if age < newer_age {
+            let newest = self.entry(0);
+            let share = age / newer_age;
+            return (now.0 + (newest.0 - now.0) * share, now.1 + (newest.1 - now.1) * share);
         }
-        then
+        let mut place = 0;
+        for _ in 0..ENTRIES - 2 {
+            if age >= newer_age + self.spacing {
+                newer_age += self.spacing;
+                place += 1;
+            }
+        }
+        let (newer, older) = (self.entry(place), self.entry(place + 1));
+        let share = ((age - newer_age) / self.spacing).min(T::one());
+        (newer.0 + (older.0 - newer.0) * share, newer.1 + (older.1 - newer.1) * share)
+    }
+
+    fn entry(&self, place: usize) -> (Vector3<T>, Vector3<T>) {
+        self.entries.get(place).copied().unwrap_or_else(|| (Vector3::zeros(), Vector3::zeros()))
     }
 
     /// (11).
-    pub(crate) fn shift(&mut self, [position, velocity, acceleration]: &[Vector3<T>; 3]) {
+    pub(crate) fn shift(&mut self, Moved { position, velocity, acceleration, .. }: &Moved<T>) {
         let mut age = self.since;
         for (x, v) in &mut self.entries {
             *x += position - (velocity - acceleration * (age * T::lit(0.5))) * age;

@@ -38,6 +38,16 @@ pub struct Imu<T> {
     pub specific_force: Vector3<T>,
 }
 
+/// What a correction does to the motion, in N.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved<T> {
+    pub(crate) position: Vector3<T>,
+    pub(crate) velocity: Vector3<T>,
+    pub(crate) acceleration: Vector3<T>,
+    /// δθ.
+    pub(crate) turn: Vector3<T>,
+}
+
 /// The nominal state, of the IMU's place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Strapdown<T> {
@@ -93,8 +103,8 @@ impl<T: Real> Strapdown<T> {
         self.attitude = Matrix3::from_columns(&[b1, b2, b1.cross(&b2)]);
     }
 
-    /// Adds an error. Returns what it does to position, velocity and acceleration, for the ring.
-    pub(crate) fn inject(&mut self, error: &[T; ERRORS]) -> [Vector3<T>; 3] {
+    /// Adds an error. Returns how the motion has moved, for what remembers it.
+    pub(crate) fn inject(&mut self, error: &[T; ERRORS]) -> Moved<T> {
         let [x1, x2, x3, v1, v2, v3, t1, t2, t3, g1, g2, g3, a1, a2, a3] = *error;
         let (position, velocity, turn) =
             (Vector3::new(x1, x2, x3), Vector3::new(v1, v2, v3), Vector3::new(t1, t2, t3));
@@ -116,6 +126,6 @@ impl<T: Real> Strapdown<T> {
         self.body_rate -= drift;
         self.accelerometer_bias += bias;
         self.force -= bias;
-        [position, velocity, acceleration]
+        Moved { position, velocity, acceleration, turn }
     }
 }

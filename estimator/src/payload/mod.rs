@@ -26,14 +26,14 @@ pub use state::PayloadState;
 
 use model::{Matrix3, OutOfRange, Real, State, Vector3};
 
-use crate::covariance::{Covariance, Scalar, dot};
-use crate::lever::{axes, swung};
+use crate::covariance::{Scalar, dot};
+use crate::lever::{axes, swing};
 use crate::motion::Motion;
 use glide::Glide;
 use health::CableWatch;
 use load::{Innovations, Swing};
 use pendulum::{Pendulum, Pivot, Pull};
-use predict::Spread;
+use predict::{Covariance, Spread};
 use state::{ERRORS, index};
 use thrust::{Axis, Linearized, Mean, Window};
 
@@ -77,9 +77,7 @@ pub struct Payload<T> {
     params: PayloadParams<T>,
     spread: Spread<T>,
     state: PayloadState<T>,
-    covariance: Covariance<T, ERRORS>,
-    /// Variances at the start.
-    initial: [T; ERRORS],
+    covariance: Covariance<T>,
     /// The period's place in the cycle.
     phase: u8,
     window: Window<T>,
@@ -114,27 +112,11 @@ impl<T: Real> Payload<T> {
     /// [`OutOfRange`] names the first parameter out of its range.
     pub fn new(params: PayloadParams<T>) -> Result<Self, OutOfRange<T>> {
         params.check()?;
-        let noise = &params.noise;
-        let (rod, rate, offset) = (noise.start_rod, noise.start_rate, noise.offset);
-        let deviations = [
-            rod,
-            rod,
-            rate,
-            rate,
-            noise.wind,
-            noise.wind,
-            noise.residual,
-            noise.residual,
-            offset,
-            offset,
-            noise.thrust,
-            noise.mass,
-        ];
+        let (rod, rate) = (params.noise.start_rod, params.noise.start_rate);
         Ok(Self {
             spread: Spread::new(&params, params.period * T::lit(f64::from(HALF))),
             state: PayloadState::hanging(),
-            covariance: Covariance::diagonal(&deviations),
-            initial: deviations.map(|deviation| deviation * deviation),
+            covariance: Covariance::diagonal(&params.noise.start()),
             phase: 3,
             window: Window::empty(),
             mean: Mean { residual: Vector3::zeros(), thrust: T::zero(), is_full: false },
@@ -194,8 +176,8 @@ impl<T: Real> Payload<T> {
     }
 
     /// The covariance of the errors, in the order (η, ζ, w, r, l, k_T, μ).
-    pub fn covariance(&self) -> &[[T; ERRORS]; ERRORS] {
-        &self.covariance.0
+    pub fn covariance(&self) -> [[T; ERRORS]; ERRORS] {
+        self.covariance.full()
     }
 
     /// A measurement of the load, `age` s old at the last [`step`](Self::step), compared with the rod
@@ -265,8 +247,9 @@ impl<T: Real> Payload<T> {
         let params = &self.params;
         let Motion { position, velocity, attitude, body_rate, specific_force } = self.last;
         let turning = (body_rate - before) * (T::one() / params.period);
-        let center = specific_force - swung(&body_rate, &turning, &params.imu);
-        let hooked = center + swung(&body_rate, &turning, &params.hook);
+        let swing = swing(&body_rate, &turning);
+        let center = specific_force - swing * params.imu;
+        let hooked = center + swing * params.hook;
         let reach = attitude * params.hook;
         // Force is the period's mean, attitude its end's: turned back by half a period.
         let halfway = hooked - body_rate.cross(&hooked) * (params.period * T::lit(0.5));
@@ -323,7 +306,7 @@ impl<T: Real> Payload<T> {
             3 => self.take_thrust(attitude, Axis::Thrust),
             4 => {
                 self.settle(CYCLE - 2);
-                self.is_mass_found |= self.covariance.0[index::MASS][index::MASS] < T::lit(0.15 * 0.15);
+                self.is_mass_found |= self.covariance.get(index::MASS, index::MASS) < T::lit(0.15 * 0.15);
                 if self.is_astray() {
                     self.restart(false);
                 }
@@ -373,10 +356,10 @@ impl<T: Real> Payload<T> {
             let per_length = T::one() / pull.dot(&pull).sqrt();
             self.state.set_rod([pull.x * per_length, pull.y * per_length], [T::zero(); 2]);
         }
-        for (component, &variance) in self.initial.iter().enumerate() {
+        for (component, deviation) in self.params.noise.start().into_iter().enumerate() {
             // What hangs there may be another load only where the cable was slack.
             if component < index::WIND || (component == index::MASS && is_new) {
-                self.covariance.forget(component, variance);
+                self.covariance.forget(component, deviation * deviation);
             }
         }
         self.is_mass_found &= !is_new;
@@ -439,12 +422,12 @@ impl<T: Real> Payload<T> {
         }
         let sensitivity = pendulum.sensitivity(&self.params, pivot, &self.state);
         let rows = sensitivity.acceleration(&self.params, &self.state.rod);
-        self.spread.advance(&mut self.covariance, &rows, &self.state.rod, &self.initial);
+        self.spread.advance(&mut self.covariance, &rows, &self.state.rod);
         self.spread.relax(&mut self.state);
         // Each period unread moves the rod by what the accelerometer might have said.
         let unread = T::lit(UNREAD) * self.params.period / self.params.cable_length * self.unread;
         for i in [index::RATE, index::RATE + 1] {
-            self.covariance.0[i][i] += unread * unread;
+            self.covariance.add(i, unread * unread);
         }
         let (rod, rate) = (T::one(), T::lit(FASTEST * FASTEST));
         self.covariance.limit(&[(0, rod), (1, rod), (2, rate), (3, rate)]);
@@ -486,12 +469,12 @@ impl<T: Real> Payload<T> {
 
     /// What the filter is worth, once a cycle.
     fn judge(&self) -> Health<T> {
-        let p = &self.covariance.0;
-        let rod_deviation = (p[0][0] + p[1][1]).sqrt();
+        let both = |at: usize| (self.covariance.get(at, at) + self.covariance.get(at + 1, at + 1)).sqrt();
+        let rod_deviation = both(index::ROD);
         Health {
             validity: self.validity(rod_deviation),
             rod_deviation,
-            rate_deviation: (p[2][2] + p[3][3]).sqrt(),
+            rate_deviation: both(index::RATE),
             surprise: self.surprise,
         }
     }
@@ -513,7 +496,7 @@ impl<T: Real> Payload<T> {
 /// Takes in a scalar of a batch, whose innovation is against the state before the batch. The mass
 /// may be only considered. Returns ν²/S.
 fn take<T: Real>(
-    covariance: &mut Covariance<T, ERRORS>,
+    covariance: &mut Covariance<T>,
     pending: &mut [T; ERRORS],
     scalar: &Scalar<T, ERRORS>,
     is_considered: bool,

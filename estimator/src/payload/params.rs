@@ -2,6 +2,7 @@
 
 use model::{OutOfRange, Real, Vector3, VehicleParams};
 
+use super::state::ERRORS;
 use crate::drag::Drag;
 use crate::lever::within;
 
@@ -95,6 +96,12 @@ impl<T: Real> Default for PayloadNoise<T> {
 }
 
 impl<T: Real> PayloadNoise<T> {
+    /// Standard deviations of the twelve errors at the start.
+    pub(super) fn start(&self) -> [T; ERRORS] {
+        let Self { start_rod: q, start_rate: w, wind, residual, offset, thrust, mass, .. } = *self;
+        [q, q, w, w, wind, wind, residual, residual, offset, offset, thrust, mass]
+    }
+
     /// The same, with these deviations of the rod (rad) and its rate (1/s) at the start.
     #[must_use]
     pub fn starting(self, rod: T, rate: T) -> Self {

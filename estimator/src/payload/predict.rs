@@ -12,16 +12,22 @@ use model::{Real, Vector3};
 
 use super::params::{PayloadNoise, PayloadParams};
 use super::state::{ERRORS, PayloadState, index};
-use crate::covariance::Covariance;
+use crate::covariance::{at, unrolled};
+
+/// The covariance of the twelve errors.
+pub(super) type Covariance<T> = crate::covariance::Covariance<T, ERRORS, { ERRORS * (ERRORS + 1) / 2 }>;
 
 /// Noise and decay over one step of the covariance, made once.
 #[derive(Clone, Debug)]
-pub(crate) struct Spread<T> {
+pub(super) struct Spread<T> {
     step: T,
-    /// What a step leaves of each error that doesn't move with the rod.
-    kept: [T; ERRORS],
-    /// What it adds to its variance.
-    added: [T; ERRORS],
+    /// What a step leaves of wind and residual.
+    kept: [T; 2],
+    /// What it adds to the variances of wind, residual, offset, and of thrust scale and mass.
+    added: [T; 4],
+    /// Variances beyond which offset, thrust scale and mass don't walk: nothing that is not heard of
+    /// grows for ever.
+    most: [T; 3],
     /// q_rod² and (N_a/L)², times the step.
     rod: T,
     pivot: T,
@@ -31,129 +37,114 @@ pub(crate) struct Spread<T> {
 const FLOOR: f64 = 1e-9;
 
 impl<T: Real> Spread<T> {
-    pub(crate) fn new(params: &PayloadParams<T>, step: T) -> Self {
+    pub(super) fn new(params: &PayloadParams<T>, step: T) -> Self {
         let PayloadNoise { accelerometer, rod, wind, wind_time, residual, residual_time, .. } = params.noise;
+        let PayloadNoise { offset, offset_walk, scale_walk, thrust, mass, .. } = params.noise;
         let one = T::one();
         let left = |time: T| one - step / time;
         let new = |deviation: T, kept: T| deviation * deviation * (one - kept * kept);
         let (air, rest) = (left(wind_time), left(residual_time));
         let walk = |per_root: T| per_root * per_root * step;
-        let pivot = accelerometer / params.cable_length;
-        let (gust, force) = (new(wind, air), new(residual, rest));
-        let (offset, scale, none) = (walk(params.noise.offset_walk), walk(params.noise.scale_walk), T::zero());
         Self {
             step,
-            kept: [one, one, one, one, air, air, rest, rest, one, one, one, one],
-            added: [none, none, none, none, gust, gust, force, force, offset, offset, scale, scale],
+            kept: [air, rest],
+            added: [new(wind, air), new(residual, rest), walk(offset_walk), walk(scale_walk)],
+            most: [offset, thrust, mass].map(|deviation| deviation * deviation),
             rod: walk(rod),
-            pivot: walk(pivot),
+            pivot: walk(accelerometer / params.cable_length),
         }
     }
 
     /// What a step leaves of wind and residual themselves: the same that it leaves of their errors.
-    pub(crate) fn relax(&self, state: &mut PayloadState<T>) {
-        let (air, rest) = (self.kept[index::WIND], self.kept[index::RESIDUAL]);
+    pub(super) fn relax(&self, state: &mut PayloadState<T>) {
+        let [air, rest] = self.kept;
         state.wind = state.wind.map(|component| component * air);
         state.residual = state.residual.map(|component| component * rest);
     }
 
-    /// One step with q̈'s answers `rows` to (η, ζ, w, r, μ) at the rod `q`. `most` are the
-    /// variances up to which walks walk.
+    /// One step with q̈'s answers `rows` to (η, ζ, w, r, μ) at the rod `q`.
     #[inline(never)]
-    pub(crate) fn advance(
-        &self,
-        covariance: &mut Covariance<T, ERRORS>,
-        rows: &[[T; 9]; 2],
-        q: &Vector3<T>,
-        most: &[T; ERRORS],
-    ) {
+    pub(super) fn advance(&self, covariance: &mut Covariance<T>, rows: &[[T; 9]; 2], q: &Vector3<T>) {
         let p = &mut covariance.0;
         let rows = rows.map(|row| row.map(|entry| entry * self.step));
-        // Y = A P: rows of η are those of ζ times the step, rows of ζ sums of nine.
-        let mut turned = [[T::zero(); ERRORS]; 2];
-        for (sum, row) in turned.iter_mut().zip(&rows) {
-            for (j, sum) in sum.iter_mut().enumerate() {
-                *sum = row[0] * p[0][j]
-                    + row[1] * p[1][j]
-                    + row[2] * p[2][j]
-                    + row[3] * p[3][j]
-                    + row[4] * p[4][j]
-                    + row[5] * p[5][j]
-                    + row[6] * p[6][j]
-                    + row[7] * p[7][j]
-                    + row[8] * p[index::MASS][j];
-            }
-        }
-        // Rows of the new matrix, then its columns: of ζ first, since those of η need the old ones.
-        let moved = |y: &[T; ERRORS], row: &[T; 9]| -> T {
-            row[0] * y[0]
-                + row[1] * y[1]
-                + row[2] * y[2]
-                + row[3] * y[3]
-                + row[4] * y[4]
-                + row[5] * y[5]
-                + row[6] * y[6]
-                + row[7] * y[7]
-                + row[8] * y[index::MASS]
-        };
         let step = self.step;
-        // E(ζ′ ηᵀ′) and E(η′ η′ᵀ) from the old blocks and Y.
+        // Y = A P, rows of ζ: sums of nine. Those of η are rows of ζ times the step.
+        let mut turned = [[T::zero(); ERRORS]; 2];
+        unrolled!(a < 2, {
+            unrolled!(j < ERRORS, {
+                let mut sum = rows[a][8] * p[at(index::MASS, j)];
+                unrolled!(k < 8, { sum += rows[a][k] * p[at(k, j)] });
+                turned[a][j] = sum;
+            });
+        });
+        let moved = |y: &[T; ERRORS], row: &[T; 9]| -> T {
+            let mut sum = row[8] * y[index::MASS];
+            unrolled!(k < 8, { sum += row[k] * y[k] });
+            sum
+        };
+        // The blocks of η and ζ, from the old ones and Y.
         let rod = [
-            p[0][0] + step * (p[0][2] + p[0][2] + step * p[2][2]),
-            p[1][0] + step * (p[1][2] + p[0][3] + step * p[2][3]),
-            p[1][1] + step * (p[1][3] + p[1][3] + step * p[3][3]),
+            p[at(0, 0)] + step * (p[at(0, 2)] + p[at(0, 2)] + step * p[at(2, 2)]),
+            p[at(1, 0)] + step * (p[at(1, 2)] + p[at(0, 3)] + step * p[at(2, 3)]),
+            p[at(1, 1)] + step * (p[at(1, 3)] + p[at(1, 3)] + step * p[at(3, 3)]),
         ];
-        let mixed = [0, 1].map(|a| {
-            [0, 1].map(|b| {
-                // ζ_a′ with η_b′.
-                p[2 + a][b] + turned[a][b] + step * (p[2 + a][2 + b] + turned[a][2 + b])
-            })
+        let mut mixed = [[T::zero(); 2]; 2];
+        unrolled!(a < 2, {
+            unrolled!(b < 2, {
+                // ζ_a with η_b.
+                mixed[a][b] = p[at(2 + a, b)] + turned[a][b] + step * (p[at(2 + a, 2 + b)] + turned[a][2 + b]);
+            });
         });
         let rate = [
-            p[2][2] + turned[0][2] + turned[0][2] + moved(&turned[0], &rows[0]),
-            p[3][2] + turned[1][2] + turned[0][3] + moved(&turned[1], &rows[0]),
-            p[3][3] + turned[1][3] + turned[1][3] + moved(&turned[1], &rows[1]),
+            p[at(2, 2)] + turned[0][2] + turned[0][2] + moved(&turned[0], &rows[0]),
+            p[at(3, 2)] + turned[1][2] + turned[0][3] + moved(&turned[1], &rows[0]),
+            p[at(3, 3)] + turned[1][3] + turned[1][3] + moved(&turned[1], &rows[1]),
         ];
-        for j in index::WIND..ERRORS {
-            let kept = self.kept[j];
-            for a in 0..2 {
-                let rod = (p[a][j] + step * p[2 + a][j]) * kept;
-                let rate = (p[2 + a][j] + turned[a][j]) * kept;
-                p[a][j] = rod;
-                p[j][a] = rod;
-                p[2 + a][j] = rate;
-                p[j][2 + a] = rate;
+        let [air, rest] = self.kept;
+        // What is left of the error `j`.
+        macro_rules! kept {
+            ($j:expr) => {
+                if $j < index::RESIDUAL {
+                    air
+                } else if $j < index::OFFSET {
+                    rest
+                } else {
+                    T::one()
+                }
+            };
+        }
+        unrolled!(j < ERRORS, {
+            if j >= index::WIND {
+                unrolled!(a < 2, {
+                    p[at(a, j)] = (p[at(a, j)] + step * p[at(2 + a, j)]) * kept!(j);
+                    p[at(2 + a, j)] = (p[at(2 + a, j)] + turned[a][j]) * kept!(j);
+                });
+                unrolled!(k < index::OFFSET, {
+                    if k >= index::WIND && k <= j {
+                        p[at(k, j)] *= kept!(k) * kept!(j);
+                    }
+                });
+            }
+        });
+        p[at(0, 0)] = rod[0];
+        p[at(1, 0)] = rod[1];
+        p[at(1, 1)] = rod[2];
+        unrolled!(a < 2, { unrolled!(b < 2, { p[at(2 + a, b)] = mixed[a][b] }) });
+        p[at(2, 2)] = rate[0] + self.rod + self.pivot * (T::one() - q.x * q.x);
+        p[at(3, 2)] = rate[1] - self.pivot * (q.x * q.y);
+        p[at(3, 3)] = rate[2] + self.rod + self.pivot * (T::one() - q.y * q.y);
+        let [gust, force, offset, scale] = self.added;
+        let [most_offset, most_thrust, most_mass] = self.most;
+        for (k, added) in [(4, gust), (5, gust), (6, force), (7, force)] {
+            covariance.add(k, added);
+        }
+        for (k, added, most) in
+            [(8, offset, most_offset), (9, offset, most_offset), (10, scale, most_thrust), (11, scale, most_mass)]
+        {
+            if covariance.get(k, k) < most {
+                covariance.add(k, added);
             }
         }
-        for k in index::WIND..index::OFFSET {
-            for j in k..ERRORS {
-                let entry = p[k][j] * (self.kept[k] * self.kept[j]);
-                p[k][j] = entry;
-                p[j][k] = entry;
-            }
-        }
-        p[0][0] = rod[0];
-        p[1][1] = rod[2];
-        p[0][1] = rod[1];
-        p[1][0] = rod[1];
-        for a in 0..2 {
-            for b in 0..2 {
-                p[2 + a][b] = mixed[a][b];
-                p[b][2 + a] = mixed[a][b];
-            }
-        }
-        let across = self.pivot * (q.x * q.y);
-        p[2][2] = rate[0] + self.rod + self.pivot * (T::one() - q.x * q.x);
-        p[3][3] = rate[2] + self.rod + self.pivot * (T::one() - q.y * q.y);
-        p[3][2] = rate[1] - across;
-        p[2][3] = p[3][2];
-        for k in index::WIND..ERRORS {
-            // What walks stops where it was at the start: nothing that is not heard of grows for
-            // ever.
-            if k < index::OFFSET || p[k][k] < most[k] {
-                p[k][k] += self.added[k];
-            }
-        }
-        covariance.floor(&[T::lit(FLOOR); ERRORS]);
+        covariance.floor(T::lit(FLOOR));
     }
 }

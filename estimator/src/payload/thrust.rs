@@ -24,8 +24,9 @@ use model::{Matrix3, Real, Vector3};
 
 use super::params::PayloadParams;
 use super::pendulum::{Pendulum, Pivot, Pull, Sensitivity, into_body};
+use super::predict::Covariance;
 use super::state::{ERRORS, PayloadState, index};
-use crate::covariance::{Covariance, Scalar};
+use crate::covariance::Scalar;
 use crate::lever::axes;
 
 /// What acts over a window: sums over its periods.
@@ -219,13 +220,8 @@ pub(crate) enum Axis {
 /// there in minutes. So once it `is_found` they have a say only while the rod is plainly off the
 /// thrust's axis: by 0.05 rad and three of its deviations, together, which no noise about a hover
 /// is.
-pub(crate) fn is_considered<T: Real>(
-    covariance: &Covariance<T, ERRORS>,
-    axis: Axis,
-    along: T,
-    is_found: bool,
-) -> bool {
-    let variance = covariance.0[index::ROD][index::ROD] + covariance.0[index::ROD + 1][index::ROD + 1];
+pub(crate) fn is_considered<T: Real>(covariance: &Covariance<T>, axis: Axis, along: T, is_found: bool) -> bool {
+    let variance = covariance.get(index::ROD, index::ROD) + covariance.get(index::ROD + 1, index::ROD + 1);
     let is_plain = along * along > variance * T::lit(4.5) + T::lit(0.05 * 0.05);
     variance > T::lit(2.0 * 0.04 * 0.04) || (is_found && axis != Axis::Thrust && !is_plain)
 }

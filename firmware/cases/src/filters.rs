@@ -75,7 +75,9 @@ impl Case for LoadBehindNavigation {
             turned * (1.0 / Real::sqrt(turned.dot(&turned)))
         };
         let attitude = Matrix3::from_columns(&[column(Vector3::x()), column(Vector3::y()), column(Vector3::z())]);
-        Motion { position: random.vector(2.0), velocity: random.vector(1.0), attitude, body_rate, specific_force }
+        // Within what navigation corrects from one period to the next: a jump has a cost of its own.
+        let (position, velocity) = (random.vector(0.02), random.vector(0.02));
+        Motion { position, velocity, attitude, body_rate, specific_force }
     }
 
     fn step(&mut self, state: &Motion<f32>) -> Estimate<f32> {
