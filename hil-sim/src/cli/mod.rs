@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod calibrate;
 mod campaign;
 mod check;
 mod compare;
@@ -166,6 +167,10 @@ enum Command {
     /// Each case from random starts for 60 s; the full state stands beside. Writes estimate.json.
     #[command(after_help = estimate::EXAMPLES)]
     Estimate(estimate::EstimateArguments),
+    /// Find drag, thrust scale, accelerometer noise and cable length from logs of flights, and say
+    /// what the logs can't tell.
+    #[command(after_help = calibrate::EXAMPLES)]
+    Calibrate(calibrate::CalibrateArguments),
     /// Path following against trajectory tracking, start by start: where the paper's claims hold,
     /// and where they do not.
     #[command(after_help = policies::EXAMPLES)]
@@ -248,6 +253,7 @@ pub fn run() -> Ended {
         Some(Command::Estimate(arguments)) => estimate::estimate(&common, &arguments),
         Some(Command::Policies(arguments)) => policies::policies(&common, &arguments),
         Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
+        Some(Command::Calibrate(arguments)) => calibrate::calibrate(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
         Some(Command::View { file }) => view::view(&file),

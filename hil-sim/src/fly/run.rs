@@ -8,6 +8,7 @@ use super::flight::{Control, End, Entry, Plan};
 use super::metrics::{Metrics, Results};
 use super::pilot::{Answers, Pilot};
 use super::sample::Sample;
+use super::sight::Sight;
 use super::twin::Twinned;
 use crate::describe::scenario::Scenario;
 use crate::world::Seed;
@@ -106,7 +107,14 @@ pub fn fly_on(
         if moment.step % log_every == 0 || moment.is_over {
             // At the start as they were given: there and back they would be rounded.
             let x = if moment.step == 0 { scenario.initial } else { moment.state.to_paper() };
-            log.push(Sample { t_s: flown_s, x, distance_m, decision: moment.decision.copied() });
+            let decision = moment.decision.copied();
+            log.push(Sample {
+                t_s: flown_s,
+                x,
+                distance_m,
+                decision,
+                specific_force: moment.sight.map(Sight::specific_force),
+            });
         }
     });
     let (deviation, twin_cpu) = pilot.finish();

@@ -1,5 +1,7 @@
 //! What a log keeps of a control period.
 
+use controller::Vector3;
+
 use super::pilot::Decision;
 
 /// One sample of a flight.
@@ -13,4 +15,6 @@ pub struct Sample {
     pub distance_m: f64,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
     pub decision: Option<Decision>,
+    /// Accelerometer's reading in body axes, m/s², where an estimator has one.
+    pub specific_force: Option<Vector3<f64>>,
 }

@@ -25,6 +25,7 @@ pub struct Sight {
     rotors: RotorModel,
     mocap: Option<(f64, f64)>,
     estimate: Option<Estimate<f32>>,
+    specific_force: Vector3<f64>,
 }
 
 /// Thrust as an autopilot without rotor speeds has it: the command, late and through a first-order
@@ -115,12 +116,14 @@ impl Sight {
             rotors: RotorModel::new(scenario, hover),
             mocap: sensors.mocap.map(|mocap| (mocap.noise * TRUST, mocap.attitude_noise * TRUST)),
             estimate: None,
+            specific_force: Vector3::zeros(),
         })
     }
 
     /// What is seen of `world` at the end of a period under `command`.
     pub fn see(&mut self, world: &World, command: &Command<f64>) -> State<f64> {
         let readings = self.instruments.read(world);
+        self.specific_force = readings.imu.specific_force;
         let modelled = self.rotors.pass(command.thrust);
         let imu =
             Imu { body_rate: single(&readings.imu.body_rate), specific_force: single(&readings.imu.specific_force) };
@@ -164,6 +167,12 @@ impl Sight {
     #[must_use]
     pub fn estimate(&self) -> Option<&Estimate<f32>> {
         self.estimate.as_ref()
+    }
+
+    /// The accelerometer's last reading, body axes, m/s².
+    #[must_use]
+    pub fn specific_force(&self) -> Vector3<f64> {
+        self.specific_force
     }
 
     /// The payload filter.

@@ -1,5 +1,6 @@
 //! Many flights, and what is asked of a path or the law without one.
 
+pub mod calibrate;
 pub mod campaign;
 pub mod check;
 pub mod compare;

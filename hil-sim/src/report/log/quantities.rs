@@ -94,6 +94,12 @@ pub const QUANTITIES: &[Quantity] = &[
         values: |r| vector(&r.state.body_rate),
     },
     Quantity {
+        topic: "uav",
+        columns: &[("f1", "m/s^2"), ("f2", "m/s^2"), ("f3", "m/s^2")],
+        about: "The accelerometer's specific force in body axes, mean of a control period",
+        values: |r| r.specific_force.as_ref().and_then(vector),
+    },
+    Quantity {
         topic: "angles",
         columns: &[("alpha", "rad"), ("beta", "rad")],
         about: "The paper's angles of the rod",

@@ -6,6 +6,7 @@ use crate::describe::scenario::{Law, Scenario};
 use crate::fly::batch::Outcome;
 use crate::fly::flight::Moment;
 use crate::fly::pilot::{Decision, Telemetry};
+use crate::fly::sight::Sight;
 
 /// One logged instant of a flight.
 #[derive(Clone, Copy, Debug)]
@@ -22,6 +23,8 @@ pub struct Record {
     pub distance_m: Option<f64>,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
     pub decision: Option<Decision>,
+    /// Accelerometer's reading in body axes, m/s², where an estimator has one.
+    pub specific_force: Option<Vector3<f64>>,
     /// Errors of speed (m/s) and yaw (rad), of a law that follows a path.
     pub errors: Option<[f64; 2]>,
 }
@@ -48,6 +51,7 @@ impl Record {
             distance_m,
             errors: decision.and_then(|decision| decision.telemetry).filter(|_| follows).map(errors),
             decision,
+            specific_force: None,
         }
     }
 
@@ -55,8 +59,9 @@ impl Record {
     #[must_use]
     pub fn of_flight(Outcome { scenario, flight, .. }: &Outcome) -> Vec<Self> {
         let samples = flight.log.iter();
-        let record = samples.map(|sample| {
-            Self::new(scenario, sample.t_s, State::from_paper(&sample.x), Some(sample.distance_m), sample.decision)
+        let record = samples.map(|sample| Self {
+            specific_force: sample.specific_force,
+            ..Self::new(scenario, sample.t_s, State::from_paper(&sample.x), Some(sample.distance_m), sample.decision)
         });
         record.collect()
     }
@@ -64,7 +69,10 @@ impl Record {
     /// What a watcher of a flight of `scenario` sees.
     #[must_use]
     pub fn of_moment(scenario: &Scenario, moment: &Moment<'_>) -> Self {
-        Self::new(scenario, moment.t_s, *moment.state, moment.distance_m, moment.decision.copied())
+        Self {
+            specific_force: moment.sight.map(Sight::specific_force),
+            ..Self::new(scenario, moment.t_s, *moment.state, moment.distance_m, moment.decision.copied())
+        }
     }
 
     /// Where the law's answer came from.

@@ -1,0 +1,77 @@
+//! `calibrate`: what a vehicle is, from logs of its flights.
+
+use clap::Args;
+use hil_sim::study::calibrate::{self, Known};
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::{Common, Ended};
+
+/// Each example can be pasted into a shell.
+pub const EXAMPLES: &str = "Examples:
+  hil-sim run slow.toml fast.toml                     logs in out/, with f1 f2 f3 where [estimator] flies
+  hil-sim calibrate out/slow.csv out/fast.csv --uav-mass 2.5 --payload-mass 0.5
+
+Columns, in SI units, n3 down: t_s, att_w … att_z, f1 … f3 (accelerometer, body axes), thrust (commanded), uav_p1 … uav_p3,
+uav_v1 … uav_v3, and of the load p1 … p3, v1 … v3, as motion capture or an estimator has them. Fly in calm air, at two
+speeds or more, with turns of the yaw.";
+
+/// What is known, and the logs.
+#[derive(Args)]
+pub struct CalibrateArguments {
+    /// CSV logs of one vehicle in one wind.
+    #[arg(required = true, value_name = "LOG")]
+    files: Vec<PathBuf>,
+    /// Mass of the UAV, kg, 0.01 to 1000.
+    #[arg(long, value_name = "KG", value_parser = within::<1, 100_000>)]
+    uav_mass: f64,
+    /// Mass of the load, kg, 0.01 to 1000: weighed, since at hover it is one with the thrust scale.
+    #[arg(long, value_name = "KG", value_parser = within::<1, 100_000>)]
+    payload_mass: f64,
+    /// Time over which a reading of the accelerometer is the mean, s, 0.0001 to 0.1.
+    #[arg(long, default_value_t = 0.002, value_name = "S")]
+    imu_period: f64,
+    /// Density of the air, kg/m³.
+    #[arg(long, default_value_t = 1.225, value_name = "KG/M3")]
+    density: f64,
+}
+
+/// A number within hundredths LEAST to MOST.
+fn within<const LEAST: u32, const MOST: u32>(text: &str) -> Result<f64, String> {
+    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    let (least, most) = (f64::from(LEAST) / 100.0, f64::from(MOST) / 100.0);
+    if (least..=most).contains(&value) { Ok(value) } else { Err(format!("not within {least} to {most}")) }
+}
+
+/// Reads, fits, prints.
+pub fn calibrate(common: &Common, arguments: &CalibrateArguments) -> Ended {
+    let CalibrateArguments { files, uav_mass, payload_mass, imu_period, density } = arguments;
+    for (name, value, [least, most]) in [("imu-period", *imu_period, [1e-4, 0.1]), ("density", *density, [0.1, 10.0])]
+    {
+        if !(least..=most).contains(&value) {
+            return Err(format!("--{name} {value}: not within {least} to {most}").into());
+        }
+    }
+    let mut logs = Vec::new();
+    for file in files {
+        let name = file.display();
+        let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
+        logs.push(calibrate::read(&text).map_err(|error| format!("{name}: {error}"))?);
+    }
+    let known = Known {
+        uav_mass: *uav_mass,
+        payload_mass: *payload_mass,
+        gravity: 9.81,
+        density: *density,
+        imu_period_s: *imu_period,
+    };
+    let found = calibrate::calibrate(&logs, &known)?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        for number in &found {
+            writeln!(out, "{number}")?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
