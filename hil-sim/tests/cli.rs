@@ -382,3 +382,35 @@ fn a_killed_program_takes_its_emulator_with_it() {
         std::thread::sleep(Duration::from_millis(20));
     }
 }
+
+#[test]
+fn a_mission_becomes_a_scenario_that_is_checked_and_flown() {
+    let folder = folder("mission");
+    let (file, route, map) = (folder.join("m.csv"), folder.join("route.toml"), folder.join("map.svg"));
+    fs::write(&file, "lat,lon,alt_rel\n53.527,-113.529,10\n53.5272,-113.529,10\n53.5272,-113.5286,12\n")
+        .expect("a file");
+    let run = |arguments: &[&str]| program().current_dir(&folder).args(arguments).output().expect("it starts");
+    let unplaced = run(&["route", "m.csv"]);
+    assert!(!unplaced.status.success() && text(&unplaced.stderr).contains("--home"), "{}", text(&unplaced.stderr));
+    let home = "--home=53.527,-113.529,668";
+    let written = run(&["route", "m.csv", home, "--out", "route.toml", "--svg", "map.svg"]);
+    assert!(written.status.success(), "{}", text(&written.stderr));
+    assert!(fs::read_to_string(&map).expect("a map").starts_with("<svg"));
+    for (option, begin) in [("--rust", "/// The route of m.csv"), ("--c", "/* The route of m.csv")] {
+        let printed = run(&["route", "m.csv", home, option, "--quiet"]);
+        assert!(printed.status.success() && text(&printed.stdout).starts_with(begin), "{option}");
+    }
+    assert!(run(&["check", "route.toml", "--quiet"]).status.success());
+    assert!(run(&["run", "route.toml", "--quiet"]).status.success());
+    let summary = fs::read_to_string(folder.join("out/summary.json")).expect("a summary");
+    for key in ["dc_max_m", "dc_rms_m", "stop_error_m", "thrust_step_max"] {
+        assert!(summary.contains(key), "{key}: {summary}");
+    }
+    // Refused before it is flown where a fence is not kept.
+    let fenced = fs::read_to_string(&route).expect("the route")
+        + "\n[fence]\ninside = [{ center = [0.0, 0.0], radius = 15.0 }]\n";
+    fs::write(folder.join("fenced.toml"), fenced).expect("a file");
+    let refused = run(&["run", "fenced.toml", "--out", "none"]);
+    assert!(!refused.status.success() && text(&refused.stderr).contains("leg"), "{}", text(&refused.stderr));
+    assert!(!folder.join("none").exists());
+}

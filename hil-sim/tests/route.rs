@@ -142,6 +142,44 @@ fn distance_is_that_of_the_nearest_leg() {
     }
 }
 
+/// Load, UAV and cable, the last two 2 m above the first and beside it in bends, are kept from every
+/// edge by the margin; who does not keep it is named with the leg.
+#[test]
+fn fences_hold_for_load_uav_and_cable() {
+    let breaches = |fence: Value| {
+        let text = toml::to_string(&json!({
+            "path": { "kind": "route", "points": [[0, 0, -10], [40, 0, -10], [40, 30, -10]], "corner_m": 4, "speed": 3 },
+            "fence": fence
+        }));
+        let scenario = Scenario::parse("fence.toml", &text.unwrap()).unwrap_or_else(|error| panic!("{error}"));
+        let Law::Follow { path, .. } = &scenario.controller.law else { panic!("it follows") };
+        let vehicle = controller::Vehicle::new(scenario.controller.vehicle).unwrap();
+        scenario.fence.unwrap().breaches(&path.check(&vehicle, &scenario.limits).unwrap())
+    };
+    let within = json!([[-5, -5], [45, -5], [45, 35], [-5, 35]]);
+    // Heights: the load at 10 m, the UAV at 12.
+    let tall = json!({ "polygon": within, "up_m": [8.5, 13.5] });
+    assert_eq!(breaches(json!({ "inside": [tall], "margin_m": 1.0 })), []);
+    let low = breaches(json!({ "inside": [{ "polygon": within, "up_m": [8.5, 12.5] }], "margin_m": 1.0 }));
+    assert!(!low.is_empty() && low.iter().all(|breach| breach.what != "the load" && breach.is_inside), "{low:?}");
+    // A mast between the load and the UAV is only in the cable's way; beside the second leg.
+    let mast = breaches(
+        json!({ "outside": [{ "center": [40.3, 20], "radius": 0.2, "up_m": [10.5, 11.5] }], "margin_m": 0.3 }),
+    );
+    let [mast] = mast[..] else { panic!("{mast:?}") };
+    assert_eq!((mast.what, mast.place.leg), ("the cable", Some(1)));
+    // 0.1 m from the mast, where the rod hangs straight; looked at every 5 cm.
+    assert!((mast.distance - 0.1).abs() < 2e-3, "{mast}");
+    assert!(mast.to_string().contains("the cable enters a keep-out") && mast.to_string().contains("leg 1"), "{mast}");
+    // A wall that a leg passes through between two nodes.
+    let wall = json!([[20.0, -9], [20.01, -9], [20.01, 9], [20.0, 9]]);
+    let wall = breaches(json!({ "outside": [{ "polygon": wall, "up_m": [9, 11] }], "margin_m": 0.0 }));
+    assert!(wall.iter().all(|breach| breach.place.leg == Some(0)) && !wall.is_empty(), "{wall:?}");
+    // The corner is cut by its blend: its keep-out is not entered.
+    let corner = json!({ "outside": [{ "center": [40, 0], "radius": 0.3 }], "margin_m": 0.5 });
+    assert_eq!(breaches(corner), []);
+}
+
 #[test]
 fn what_is_no_route_is_refused_by_its_field() {
     let route = |key: &str, value: Value| {

@@ -3,7 +3,7 @@
 use controller::{Vehicle, VehicleParams};
 use hil_sim::describe::course::PathSpec;
 use hil_sim::describe::scenario::{Law, Scenario};
-use hil_sim::study::check::{Limits, Reason};
+use hil_sim::study::check::{Fence, Limits, Reason, Report};
 use std::error::Error;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -25,15 +25,21 @@ body_rate (rad/s), torque (N m, per axis), tension (part of the payload's weight
 pub fn check(common: &Common, files: &[PathBuf]) -> Ended {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        let (path, vehicle, limits) = subject(file)?;
+        let Subject { path, vehicle, limits, fence } = subject(file)?;
         let name = file.display();
         match path.check(&vehicle, &limits) {
             Ok(report) => {
                 if !common.quiet {
                     writeln!(io::stdout().lock(), "{name}\n{report}")?;
                 }
-                for excess in &report.excesses {
-                    eprintln!("hil-sim: {name}: {excess}");
+                let refused = faults(&report, fence.as_ref());
+                for fault in refused.iter().take(SHOWN) {
+                    eprintln!("hil-sim: {name}: {fault}");
+                }
+                if refused.len() > SHOWN {
+                    eprintln!("hil-sim: {name}: and {} more", refused.len() - SHOWN);
+                }
+                if !refused.is_empty() {
                     code = ExitCode::FAILURE;
                 }
             }
@@ -56,9 +62,8 @@ pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Err
         let Ok(vehicle) = vehicle(&scenario.vehicle) else { continue };
         match path.check(&vehicle, &scenario.limits) {
             Ok(report) => {
-                for excess in report.excesses {
-                    refused.push(format!("{}: {excess}", scenario.name));
-                }
+                let faults = faults(&report, scenario.fence.as_ref());
+                refused.extend(faults.iter().take(SHOWN).map(|fault| format!("{}: {fault}", scenario.name)));
             }
             Err(refusal) if refusal.reason == Reason::FreeFall => {
                 refused.push(format!("{}: {refusal}", scenario.name));
@@ -80,11 +85,30 @@ pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Err
     }
 }
 
-/// The path of a scenario, for its vehicle and within its limits.
-fn subject(file: &Path) -> Result<(PathSpec, Vehicle<f64>, Limits), Box<dyn Error>> {
+/// Faults that are printed of a path, at most: a long route can have two a leg.
+const SHOWN: usize = 20;
+
+/// What is wrong with a path that can be walked.
+fn faults(report: &Report, fence: Option<&Fence>) -> Vec<String> {
+    let breaches = fence.map(|fence| fence.breaches(report)).unwrap_or_default();
+    let excesses = report.excesses.iter().map(ToString::to_string);
+    excesses.chain(breaches.iter().map(ToString::to_string)).collect()
+}
+
+/// The path of a scenario, with what it is checked against.
+struct Subject {
+    path: PathSpec,
+    vehicle: Vehicle<f64>,
+    limits: Limits,
+    fence: Option<Fence>,
+}
+
+fn subject(file: &Path) -> Result<Subject, Box<dyn Error>> {
     let scenario = load::one(file)?;
-    match scenario.controller.law {
-        Law::Follow { path, .. } => Ok((path, vehicle(&scenario.vehicle)?, scenario.limits)),
+    let vehicle = vehicle(&scenario.vehicle)?;
+    let Scenario { limits, fence, controller, .. } = scenario;
+    match controller.law {
+        Law::Follow { path, .. } => Ok(Subject { path, vehicle, limits, fence }),
         Law::Track { .. } => Err(format!("{}: the law \"track\" has no path to check", file.display()).into()),
     }
 }

@@ -13,6 +13,7 @@ mod load;
 mod many;
 mod plant;
 mod policies;
+mod route;
 mod tune;
 mod view;
 
@@ -39,6 +40,7 @@ type Ended = Result<ExitCode, Box<dyn Error>>;
   hil-sim                            fly the paper's figures, report in out/
   hil-sim run my-flight.toml         fly a scenario of your own
   hil-sim fit waypoints.csv --out path.toml    a closed curve through waypoints
+  hil-sim route mission.plan --out route.toml  a route from a ground station
   hil-sim check my-flight.toml       can its path be flown, and how fast?
   hil-sim eval < points.jsonl        evaluate the law, one JSON object a line
   hil-sim hil --port /dev/ttyUSB0    fly with the controller on a board
@@ -58,8 +60,8 @@ struct Common {
     /// Print nothing but errors.
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Folder for reports, made if it is not there (out if not given); for `fit`, the file of the
-    /// path.
+    /// Folder for reports, made if it is not there (out if not given); for `fit` and `route`,
+    /// the file of the path.
     #[arg(long, global = true, value_name = "PATH")]
     out: Option<PathBuf>,
 }
@@ -189,6 +191,12 @@ enum Command {
     /// properties.
     #[command(after_help = fit::EXAMPLES)]
     Fit(fit::FitArguments),
+    /// Make a route of a mission of a ground station or a map.
+    ///
+    /// Writes a scenario with the route as its [path], in metres about a home, and says what it
+    /// asks of the vehicle.
+    #[command(after_help = route::EXAMPLES)]
+    Route(route::RouteArguments),
     /// Fly with the controller at the other end of a serial line, a socket, or in an emulator.
     ///
     /// In lockstep, each state is one control step of the target, and the flight is the same, bit
@@ -255,6 +263,7 @@ pub fn run() -> Ended {
         Some(Command::Tune(arguments)) => tune::tune(&common, &arguments),
         Some(Command::Calibrate(arguments)) => calibrate::calibrate(&common, &arguments),
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
+        Some(Command::Route(arguments)) => route::route(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
         Some(Command::View { file }) => view::view(&file),
         Some(Command::Plant { file }) => plant::step_lines(&file),

@@ -171,6 +171,7 @@ pub const SECTIONS: &[Section] = &[
                 "(by the vehicle)",
                 "What the vehicle may be asked for, by `check` and `run`.",
             ),
+            key("fence", "", Other("table"), "(none)", "Where the flight stays, by `check` and `run`."),
         ],
     },
     Section {
@@ -496,6 +497,16 @@ pub const SECTIONS: &[Section] = &[
         keys: &[
             key("at_s", "s", Number(0.0, 10.0), "", "When, up to the flight's length."),
             key("hold_s", "s", Number(0.0, 10.0), "0.0", "How long, up to what is left of the flight."),
+        ],
+    },
+    Section {
+        table: "fence",
+        about: "Regions for load, UAV and cable, over the whole path before it is flown. A region is { polygon = [[n1, n2], …] } or { center = [n1, n2], radius }, each with up_m = [from, to] above the origin if it does not have all heights.",
+        least: "[fence]\n",
+        keys: &[
+            key("margin_m", "m", Number(0.0, 1e3), "1.0", "What is kept from every edge."),
+            key("inside", "m", Other("list of regions"), "[]", "To stay in, each of them."),
+            key("outside", "m", Other("list of regions"), "[]", "To keep out of."),
         ],
     },
     Section {

@@ -4,6 +4,7 @@ pub mod course;
 pub mod formula;
 pub mod input;
 pub mod keys;
+pub mod mission;
 pub mod path;
 pub mod reference;
 pub mod scenario;

@@ -2,11 +2,13 @@
 
 mod figures;
 pub mod log;
+mod map;
 pub(crate) mod page;
 pub(crate) mod plot;
 mod summary;
 mod table;
 
+pub use map::map;
 pub use table::table;
 
 use std::io;

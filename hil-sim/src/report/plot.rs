@@ -14,8 +14,8 @@ pub type Drawn = Result<(), Box<dyn std::error::Error>>;
 /// Colours that stay apart in print and for the colour-blind (Okabe and Ito).
 pub const COLOURS: [RGBColor; 4] =
     [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
-const GREY: RGBColor = RGBColor(120, 120, 120);
-const FONT: &str = "sans-serif";
+pub(super) const GREY: RGBColor = RGBColor(120, 120, 120);
+pub(super) const FONT: &str = "sans-serif";
 
 /// A figure as SVG, in the colours of the page around it, or black on white alone; `title` is for
 /// those who do not see it.
@@ -77,7 +77,7 @@ pub struct Curve {
 }
 
 /// Least and largest of `values`, with a margin of 5 %, and not narrower than `least`.
-fn range(values: impl Iterator<Item = f64>, least: f64) -> Range<f64> {
+pub(super) fn range(values: impl Iterator<Item = f64>, least: f64) -> Range<f64> {
     let (low, high) = values
         .filter(|value| value.is_finite())
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
@@ -88,7 +88,7 @@ fn range(values: impl Iterator<Item = f64>, least: f64) -> Range<f64> {
     centre - half..centre + half
 }
 
-fn widened(range: &Range<f64>, width: f64) -> Range<f64> {
+pub(super) fn widened(range: &Range<f64>, width: f64) -> Range<f64> {
     let centre = 0.5 * (range.start + range.end);
     centre - 0.5 * width..centre + 0.5 * width
 }

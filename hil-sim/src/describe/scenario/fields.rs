@@ -7,7 +7,7 @@ use super::gains::{self, GainFields, PoleField};
 use super::{ControllerSpec, EstimatorSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
-use crate::study::check::Limits;
+use crate::study::check::{Fence, Limits};
 use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
 use witness::plant::VehicleParameters;
 
@@ -39,6 +39,7 @@ struct ScenarioFields {
     #[serde(default)]
     seed: u64,
     limits: Option<toml::Value>,
+    fence: Option<Fence>,
     #[serde(default = "ten_seconds")]
     duration_s: f64,
     #[serde(default = "four")]
@@ -181,6 +182,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     let rate_hz = within("controller.rate_hz", fields.controller.rate_hz, 5.0..=10_000.0)?;
     let law = law(&fields.controller, fields.path, fields.reference)?;
     fields.cable.map_or(Ok(()), |cable| cable.check("cable"))?;
+    fields.fence.as_ref().map_or(Ok(()), |fence| fence.check("fence"))?;
     fields.ground.map_or(Ok(()), |ground| ground.check("ground"))?;
     fields.environment.check("environment")?;
     fields.sensors.check("sensors", 1.0 / rate_hz)?;
@@ -248,6 +250,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         estimator: fields.estimator,
         seed: fields.seed,
         limits,
+        fence: fields.fence,
         duration_s,
         substeps: within("substeps", fields.substeps, 1..=1000)?,
         log_period_s: within("log_period_s", fields.log_period_s, 1e-4..=duration_s)?,

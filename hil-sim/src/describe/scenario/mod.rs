@@ -52,7 +52,7 @@ use controller::{ActuatorLimits, Command, Gains, ObserverParams, Sampling, State
 
 use crate::describe::course::{PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
-use crate::study::check::Limits;
+use crate::study::check::{Fence, Limits};
 use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
 use crate::world::{Seed, World, WorldSpec};
 use witness::plant::VehicleParameters;
@@ -95,6 +95,8 @@ pub struct Scenario {
     pub seed: u64,
     /// What the vehicle may be asked to do on its path.
     pub limits: Limits,
+    /// Where it stays, and what it keeps out of.
+    pub fence: Option<Fence>,
     /// s.
     pub duration_s: f64,
     /// RK4 steps of the plant in one control period.

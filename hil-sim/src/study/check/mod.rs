@@ -6,6 +6,7 @@
 //! and the [law's own inverse](steady) gives what the vehicle must do for it all along the lap.
 
 mod demand;
+pub mod fence;
 mod jumps;
 pub mod lap;
 mod limits;
@@ -18,6 +19,7 @@ pub mod steady;
 pub mod walk;
 
 pub use demand::{Demand, Range};
+pub use fence::{Breach, Fence};
 pub use lap::{Approach, Lap, Nearest, Node};
 pub use limits::Limits;
 pub use refusal::{Place, Reason, Refusal};
@@ -68,6 +70,8 @@ pub struct Report {
     pub fastest: Option<Fastest>,
     /// Of a route.
     pub legs: Option<Legs>,
+    /// Where the UAV is at each node of the lap, N, m.
+    pub uavs: Vec<Vector3<f64>>,
 }
 
 /// Range of the search for the highest speed, m/s.
@@ -97,8 +101,10 @@ pub fn check<P: Path<f64> + ?Sized>(
     let mut lap_time = 0.0;
     let mut regularity = Range::new(lap.nodes()[0].regularity, lap.nodes()[0].place());
     let mut demand: Option<Demand> = None;
+    let mut uavs = Vec::new();
     for (node, (motion, yaw)) in lap.nodes().iter().zip(&motions) {
         let steady = Steady::of(vehicle, motion, yaw).ok_or_else(|| Reason::FreeFall.at(node.place()))?;
+        uavs.push(steady.uav_position(vehicle));
         regularity.take(node.regularity, node.place());
         match &mut demand {
             Some(demand) => demand.take(vehicle, &steady, node.place()),
@@ -112,7 +118,7 @@ pub fn check<P: Path<f64> + ?Sized>(
     let excesses = demand.excesses(limits);
     let forwards = motions[0].0[1].dot(&lap.nodes()[0].tangent()) > 0.0;
     let fastest = fastest(path, &lap, vehicle, limits, if forwards { 1.0 } else { -1.0 });
-    Ok(Report { lap, lap_time, regularity, branches, demand, excesses, fastest, legs: None })
+    Ok(Report { lap, lap_time, regularity, branches, demand, excesses, fastest, legs: None, uavs })
 }
 
 /// The motion at the prescribed speed and the yaw along it, at every node.

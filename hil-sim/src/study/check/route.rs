@@ -231,9 +231,10 @@ pub fn check<S: Table<f64>>(
     let time = legs.iter().map(|leg| leg.time).sum::<f64>() + dwell;
     let excesses = legs.iter().flat_map(|leg| leg.demand.excesses(limits)).collect();
     let demand = legs.iter().map(|leg| leg.demand).reduce(Demand::joined).expect("a route has a leg");
+    let uavs = steadies.iter().map(|steady| steady.uav_position(vehicle)).collect();
     let lap = Lap::new(nodes, is_closed);
     let legs = Some(Legs { legs, dwell, told, hovering, factors });
-    Ok(Report { lap, lap_time: time, regularity, branches: None, demand, excesses, fastest: None, legs })
+    Ok(Report { lap, lap_time: time, regularity, branches: None, demand, excesses, fastest: None, legs, uavs })
 }
 
 /// The time for `way` (m) at a speed that changes evenly with it, down to rest, s.

@@ -85,6 +85,12 @@ impl Steady {
         finite.then_some(steady)
     }
 
+    /// Where the UAV is, N, m.
+    #[must_use]
+    pub fn uav_position(&self, vehicle: &Vehicle<f64>) -> Vector3<f64> {
+        self.state.position - self.state.rod * vehicle.params().rod_length
+    }
+
     /// Angle of the rod from straight down, rad.
     #[must_use]
     pub fn rod_angle(&self) -> f64 {

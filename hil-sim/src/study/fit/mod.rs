@@ -7,15 +7,15 @@
 //! From there orthogonal distance regression minimizes the distances from the waypoints to their
 //! nearest points.
 
-mod columns;
 mod orthogonal;
 mod output;
 mod points;
 mod reference;
 
-pub use columns::Columns;
+pub use crate::describe::mission::columns::Columns;
+pub use crate::describe::mission::csv::PointsError;
 pub use output::{rust, toml};
-pub use points::{PointsError, Waypoints, read};
+pub use points::{Waypoints, read};
 pub use reference::LEAST_ANGLE;
 
 use crate::study::check::probe::{Frame, length};

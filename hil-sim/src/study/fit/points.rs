@@ -1,44 +1,16 @@
 //! Waypoints from a CSV file.
 
 use controller::Vector3;
-use std::fmt;
 
-use super::columns::Columns;
+use crate::describe::mission::columns::Columns;
+use crate::describe::mission::csv::{self, PointsError, Rows};
 
-/// Coordinates beyond this are a mistake, m.
-const FURTHEST: f64 = 1e5;
 /// Fewest points that make a loop in space, and most: more than a few for each harmonic say nothing
 /// new.
 const FEWEST: usize = 4;
 const MOST: usize = 20_000;
 /// Points closer than this part of the loop's extent are the same.
 const SAME: f64 = 1e-6;
-
-/// A file that holds no loop of waypoints: where, and why.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub struct PointsError {
-    /// The file.
-    pub file: String,
-    /// The line, from 1; 0 for the file as a whole.
-    pub line: u64,
-    /// The column of the table, from 1, if one is at fault.
-    pub column: Option<usize>,
-    /// What is wrong.
-    pub message: String,
-}
-
-impl fmt::Display for PointsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
-        if self.line > 0 {
-            write!(f, ":{}", self.line)?;
-        }
-        if let Some(column) = self.column {
-            write!(f, ": column {column}")?;
-        }
-        write!(f, ": {}", self.message)
-    }
-}
 
 /// A loop of waypoints.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,47 +31,14 @@ pub struct Waypoints {
 /// 20,000.
 pub fn read(file: &str, text: &str) -> Result<Waypoints, PointsError> {
     let error = |line, column, message: String| PointsError { file: file.to_owned(), line, column, message };
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .flexible(true)
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
-    let mut points: Vec<(u64, Vector3<f64>)> = Vec::new();
-    let mut columns = Columns::plain();
-    for (index, record) in reader.records().enumerate() {
-        let record = record.map_err(|fault| {
-            error(fault.position().map_or(0, csv::Position::line), None, format!("no line of a table: {fault}"))
-        })?;
-        let line = record.position().map_or(0, csv::Position::line);
-        // Names have letters that no number starts with.
-        let named = record
-            .iter()
-            .all(|field| field.starts_with(|c: char| c.is_alphabetic()) && field.parse::<f64>().is_err());
-        if index == 0 && named {
-            columns = Columns::read(record.iter()).map_err(|(column, message)| error(line, column, message))?;
-            continue;
-        }
-        if points.len() > MOST {
-            let message = format!("more than {MOST} waypoints: give every few of them");
-            return Err(error(line, None, message));
-        }
-        if record.len() != 3 {
-            return Err(error(line, None, format!("{} values where x, y, z are 3", record.len())));
-        }
-        let mut point = Vector3::zeros();
-        for (axis, field) in record.iter().enumerate() {
-            let column = Some(axis + 1);
-            let value: f64 = field.parse().map_err(|_| error(line, column, format!("\"{field}\" is no number")))?;
-            let metres = value * columns.unit(axis);
-            if !metres.is_finite() || metres.abs() > FURTHEST {
-                return Err(error(line, column, format!("{metres} is outside -{FURTHEST} to {FURTHEST} m")));
-            }
-            columns.place(&mut point, axis, value);
-        }
-        points.push((line, point));
+    let Rows { columns, rows: mut points } = csv::rows(file, text, MOST)?;
+    if let Some((column, angle)) = columns.angle() {
+        let message = format!(
+            "\"{angle}\" is an angle; waypoints are lengths from the origin of the vehicle's own position, or \
+             `hil-sim route` makes them of it"
+        );
+        return Err(error(1, Some(column), message));
     }
-
     let distance = |a: &Vector3<f64>, b: &Vector3<f64>| (a - b).dot(&(a - b)).sqrt();
     let extent = points.iter().map(|(_, point)| distance(point, &points[0].1)).fold(0.0, f64::max);
     if points.len() > 1 && distance(&points[0].1, &points[points.len() - 1].1) <= SAME * extent {

@@ -1,0 +1,131 @@
+//! `route`: a mission of a ground station or a map as a route.
+
+use clap::Args;
+use controller::{Vehicle, VehicleParams};
+use hil_sim::describe::mission::{self, Defaults, Home};
+use hil_sim::describe::path::RouteSpec;
+use hil_sim::describe::scenario::{Law, Scenario};
+use hil_sim::report;
+use hil_sim::study::check::{Limits, Report};
+use std::error::Error;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use super::{Common, Ended};
+
+/// Each example can be pasted into a shell.
+pub const EXAMPLES: &str = "Examples:
+  hil-sim route mission.plan --out route.toml
+  hil-sim route survey.kml --home 53.5270,-113.5290,668 --out route.toml --svg map.svg
+  hil-sim route points.csv --corner 5 --speed 3 --out route.toml
+  hil-sim route mission.waypoints --rust > route.rs    the table for firmware; --c for C
+
+Read are QGroundControl's .plan, MAVLink's .waypoints, KML, GPX, GeoJSON, and CSV with a line of names: north, east, up or
+down; x, y, z (down); lat, lon, alt (above the sea) or alt_rel (above home); each with a unit, as in up_ft, if it is not
+metres or degrees. What the file leads along the waypoints is the payload. The file that is written is a scenario: run,
+check, and campaign fly its [path]. Heights count from home; n1 and n2 are WGS 84's, about home, to rounding.";
+
+/// What to read, and what to write.
+#[derive(Args)]
+pub struct RouteArguments {
+    /// The mission.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The origin of N: latitude and longitude in degrees, height in m above the sea; in place of the file's own.
+    #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true)]
+    home: Option<Home>,
+    /// Height of the ground, m above the sea, for heights that the file counts from the terrain.
+    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
+    terrain: Option<f64>,
+    /// Speed where the file says none, m/s.
+    #[arg(long, value_name = "M/S")]
+    speed: Option<f64>,
+    /// How far from a waypoint its corner's blend begins, m.
+    #[arg(long, default_value_t = 2.0, value_name = "METRES")]
+    corner: f64,
+    /// The last waypoint leads back to the first.
+    #[arg(long)]
+    closed: bool,
+    /// Print the route's table as a Rust static of the controller's types.
+    #[arg(long, conflicts_with = "c")]
+    rust: bool,
+    /// Print the route's table for C.
+    #[arg(long)]
+    c: bool,
+    /// Draw a map of legs, blends, stops and fences.
+    #[arg(long, value_name = "FILE")]
+    svg: Option<PathBuf>,
+}
+
+fn home(text: &str) -> Result<Home, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|number| number.trim().parse::<f64>().map_err(|_| format!("\"{number}\" is no number")))
+        .collect::<Result<_, _>>()?;
+    let [latitude, longitude, altitude] =
+        numbers[..].try_into().map_err(|_| "three numbers: LAT,LON,ALT".to_owned())?;
+    if !(latitude.abs() <= 90.0 && longitude.abs() <= 180.0 && altitude.abs() <= 1e4) {
+        return Err("latitude within ±90 and longitude within ±180 degrees, height within ±10000 m".to_owned());
+    }
+    Ok(Home { latitude, longitude, altitude })
+}
+
+/// Speed where neither file nor command line says one, m/s.
+const SPEED: f64 = 2.0;
+/// Part of the route's time, and s, that a flight of it is given beyond.
+const LONGER: (f64, f64) = (1.05, 20.0);
+
+/// Reads, writes and reports.
+pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
+    let RouteArguments { file, home, terrain, speed, corner, closed, rust, c, svg } = arguments;
+    let name = file.display().to_string();
+    let named = |error: &dyn std::fmt::Display| format!("{name}: {error}");
+    let text = std::fs::read_to_string(file).map_err(|error| named(&error))?;
+    for to in [&common.out, svg].into_iter().flatten() {
+        report::try_file(to)?;
+    }
+    let mission = mission::read(&name, &text).map_err(|error| named(&error))?;
+    let local = mission.local(*home, *terrain).map_err(|error| named(&error))?;
+    let defaults =
+        Defaults { speed: speed.or(mission.speed).unwrap_or(SPEED), corner_m: *corner, is_closed: *closed };
+    let source = file.file_name().unwrap_or_default().to_string_lossy();
+
+    // Written with the time that the route takes, which is known once it has been read.
+    let (first, _) = checked(&mission::toml(&local, &source, &defaults, 1.0)).map_err(|error| named(&error))?;
+    let duration_s = (LONGER.0 * first.lap_time + LONGER.1).min(1e5);
+    let written = mission::toml(&local, &source, &defaults, duration_s);
+    let (report, route) = checked(&written).map_err(|error| named(&error))?;
+    if let Some(to) = &common.out {
+        report::write_file(to, written.as_bytes())?;
+    }
+    if let Some(to) = svg {
+        report::write_file(to, report::map(&format!("Route of {source}"), &local, &report.lap)?.as_bytes())?;
+    }
+    let mut out = io::stdout().lock();
+    if *rust {
+        write!(out, "{}", mission::rust(route.table(), &source))?;
+    } else if *c {
+        write!(out, "{}", mission::c(route.table(), &source))?;
+    } else if common.out.is_none() {
+        write!(out, "{written}")?;
+    }
+    if !common.quiet {
+        // Out of the way of what is to be pasted.
+        for note in &mission.notes {
+            eprintln!("{note}");
+        }
+        eprint!("{report}");
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The route of a scenario's text, and what it asks of the paper's vehicle.
+fn checked(text: &str) -> Result<(Report, RouteSpec), Box<dyn Error>> {
+    let scenario = Scenario::parse("route.toml", text)?;
+    let Law::Follow { path, .. } = scenario.controller.law else { return Err("no path".into()) };
+    let vehicle = Vehicle::new(VehicleParams::paper())?;
+    let report = path.check(&vehicle, &Limits::of(&vehicle))?;
+    let route = path.route().cloned().ok_or("no route")?;
+    Ok((report, route))
+}

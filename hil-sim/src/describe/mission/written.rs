@@ -1,0 +1,190 @@
+//! A mission in N, written as a scenario; and a route's table for firmware.
+
+use std::fmt::Write;
+
+use controller::{Knot, Run, Table};
+
+use super::{Home, Local, LocalEdge, LocalItem};
+
+/// What a mission's file does not say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defaults {
+    /// m/s.
+    pub speed: f64,
+    /// m.
+    pub corner_m: f64,
+    /// The last waypoint leads back to the first.
+    pub is_closed: bool,
+}
+
+/// The law that the built-in routes are flown with.
+const CONTROLLER: &str = "[controller]
+rate_hz = 500.0
+poles = [[-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5], [-2, -3]]
+observer = { payload = 4.0, rod = 4.0, torque = 4.0 }
+";
+
+/// A mission as a scenario that flies it, for `duration_s`, from rest at its beginning.
+#[must_use]
+pub fn toml(local: &Local, source: &str, defaults: &Defaults, duration_s: f64) -> String {
+    let mut text = String::new();
+    let speeds: Vec<f64> = local.items.iter().map(|item| item.item.speed.unwrap_or(defaults.speed)).collect();
+    // Writing to a String does not fail.
+    let _ = writeln!(text, "# From {source}.");
+    if let Some(Home { latitude, longitude, altitude }) = local.home {
+        let _ = writeln!(
+            text,
+            "# Home, the origin of N: {latitude}, {longitude} degrees, {altitude} m above the sea; heights count from there."
+        );
+    }
+    let _ = writeln!(
+        text,
+        "title = {:?}\nduration_s = {duration_s:.1}\ninitial = \"steady\"\n",
+        format!("Route of {source}")
+    );
+    let _ = writeln!(text, "[path]\nkind = \"route\"\npoints = [");
+    for LocalItem { point, .. } in &local.items {
+        let _ = writeln!(text, "    {},", list(point));
+    }
+    let _ = writeln!(text, "]\nclosed = {}", defaults.is_closed);
+    if local.items.iter().any(|item| item.item.is_smooth) {
+        let corner = |item: &LocalItem| match item.item.is_smooth {
+            true => "\"smooth\"".to_owned(),
+            false => number(defaults.corner_m),
+        };
+        let _ = writeln!(text, "corner_m = [{}]", joined(local.items.iter().map(corner)));
+    } else {
+        let _ = writeln!(text, "corner_m = {}", number(defaults.corner_m));
+    }
+    match speeds.iter().all(|speed| *speed == speeds[0]) {
+        true => {
+            let _ = writeln!(text, "speed = {}", number(speeds[0]));
+        }
+        false => {
+            let _ = writeln!(text, "speed = {}", list(&speeds));
+        }
+    }
+    let headings: Option<Vec<f64>> = local.items.iter().map(|item| item.item.heading.map(f64::to_radians)).collect();
+    match headings {
+        Some(headings) => {
+            let _ = writeln!(text, "yaw = {}", list(&headings));
+        }
+        None => {
+            let _ = writeln!(text, "yaw = \"tangent\"");
+        }
+    }
+    let stops = local.items.iter().enumerate().filter_map(|(index, item)| item.item.stop.map(|stop| (index, stop)));
+    let stop = |(index, dwell): (usize, f64)| match dwell.is_finite() {
+        true => format!("{{ index = {index}, dwell_s = {} }}", number(dwell)),
+        false => format!("{{ index = {index} }}"),
+    };
+    let stops = joined(stops.map(stop));
+    if !stops.is_empty() {
+        let _ = writeln!(text, "stops = [{stops}]");
+    }
+    let _ = write!(text, "\n{CONTROLLER}");
+    if !local.regions.is_empty() {
+        let regions = |wanted: bool| {
+            let chosen = local.regions.iter().filter(|(is_inside, _)| *is_inside == wanted);
+            joined(chosen.map(|(_, edge)| match edge {
+                LocalEdge::Polygon(corners) => {
+                    format!("{{ polygon = [{}] }}", joined(corners.iter().map(|corner| list(corner))))
+                }
+                LocalEdge::Circle(center, radius) => {
+                    format!("{{ center = {}, radius = {} }}", list(center), number(*radius))
+                }
+            }))
+        };
+        let _ = writeln!(text, "\n[fence]\ninside = [{}]\noutside = [{}]", regions(true), regions(false));
+    }
+    text
+}
+
+fn joined(parts: impl Iterator<Item = String>) -> String {
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+/// To a tenth of a millimetre; never −0.
+fn number(value: f64) -> String {
+    format!("{:?}", (1e4 * value).round() / 1e4 + 0.0)
+}
+
+fn list(values: &[f64]) -> String {
+    format!("[{}]", joined(values.iter().map(|value| number(*value))))
+}
+
+/// The table in f32 as a Rust static, for flash: `Route::new(&ROUTE)`.
+#[must_use]
+pub fn rust(table: &impl Table<f64>, source: &str) -> String {
+    let mut text = String::new();
+    let (knots, runs) = (table.knots(), table.runs());
+    let row = |numbers: &[f32]| joined(numbers.iter().map(|number| format!("{number:?}")));
+    let _ = writeln!(text, "/// The route of {source}, in N, m.");
+    let _ = writeln!(
+        text,
+        "pub static ROUTE: controller::RouteTable<[controller::Knot<f32>; {}], [controller::Run<f32>; {}]> =",
+        knots.len(),
+        runs.len()
+    );
+    let _ = writeln!(text, "    controller::RouteTable {{\n        knots: [");
+    for knot in knots {
+        let Knot { point, step, normals: [n1, n2], speed, yaw } = knot.cast::<f32>();
+        let _ = writeln!(
+            text,
+            "            controller::Knot {{ point: [{}], step: [{}], normals: [[{}], [{}]], speed: [{}], yaw: {yaw:?} }},",
+            row(&point),
+            row(&step),
+            row(&n1),
+            row(&n2),
+            row(&speed)
+        );
+    }
+    let _ = writeln!(text, "        ],\n        runs: [");
+    for run in runs {
+        let Run { first, knots, is_closed, dwell } = run.cast::<f32>();
+        let dwell = if dwell.is_finite() { format!("{dwell:?}") } else { "f32::INFINITY".to_owned() };
+        let _ = writeln!(
+            text,
+            "            controller::Run {{ first: {first}, knots: {knots}, is_closed: {is_closed}, dwell: {dwell} }},"
+        );
+    }
+    text.push_str("        ],\n    };\n");
+    text
+}
+
+/// The table in f32 for C.
+#[must_use]
+pub fn c(table: &impl Table<f64>, source: &str) -> String {
+    let mut text = String::new();
+    let (knots, runs) = (table.knots(), table.runs());
+    // A literal such as 1f is none in C, and {:?} writes 1.0.
+    let row = |numbers: &[f32]| joined(numbers.iter().map(|number| format!("{number:?}f")));
+    let _ = writeln!(
+        text,
+        "/* The route of {source}, in N, m: of each knot the point, the step to the next, two normals,"
+    );
+    let _ = writeln!(text, "   the speed either way in m/s, and the yaw in rad. */");
+    let _ = writeln!(text, "static const float route_knots[{}][15] = {{", knots.len());
+    for knot in knots {
+        let Knot { point, step, normals: [n1, n2], speed, yaw } = knot.cast::<f32>();
+        let numbers = [&point[..], &step, &n1, &n2, &speed, &[yaw]].concat();
+        let _ = writeln!(text, "    {{{}}},", row(&numbers));
+    }
+    let _ = writeln!(
+        text,
+        "}};\n/* Of each run its first knot, its number of knots, whether it closes, and how long its end is"
+    );
+    let _ = writeln!(text, "   rested at in s, negative: until told. */");
+    let _ = writeln!(
+        text,
+        "static const struct {{ unsigned first, knots, closed; float dwell; }} route_runs[{}] = {{",
+        runs.len()
+    );
+    for run in runs {
+        let Run { first, knots, is_closed, dwell } = run.cast::<f32>();
+        let dwell = if dwell.is_finite() { dwell } else { -1.0 };
+        let _ = writeln!(text, "    {{{first}u, {knots}u, {}u, {}}},", u8::from(is_closed), row(&[dwell]));
+    }
+    text.push_str("};\n");
+    text
+}
