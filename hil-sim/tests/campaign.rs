@@ -118,6 +118,12 @@ fn the_table_does_not_depend_on_threads_shards_or_interruptions() {
     assert!(String::from_utf8_lossy(&missing.stderr).contains("shard 2/3 is missing"), "{missing:?}");
     let twice = merge(&["part3", "part1", "part3", "part2"]);
     assert!(String::from_utf8_lossy(&twice.stderr).contains("shard 3/3 again"), "{twice:?}");
+    let other = folder.join("part2/campaign.json");
+    let identity = fs::read_to_string(&other).expect("a file");
+    fs::write(&other, identity.replace("\"build\": \"", "\"build\": \"another ")).expect("a file");
+    let mixed = merge(&["part3", "part1", "part2"]);
+    assert!(String::from_utf8_lossy(&mixed.stderr).contains("the program differs: another "), "{mixed:?}");
+    fs::write(&other, identity).expect("a file");
     let merged = merge(&["part3", "part1", "part2"]);
     assert!(merged.status.success(), "{}", String::from_utf8_lossy(&merged.stderr));
     assert!(table(&folder, "merged") == whole, "merged");

@@ -68,12 +68,6 @@ impl<T: Real> Actuators<T> {
         Ok(Self { limits, rotors, per_max_speed: T::one() / rotor.max_speed })
     }
 
-    /// Whether `wanted`, of which `applied` came, is more than can be given. Mostly the two are
-    /// equal, and there is nothing to find out; after a take-over they differ without a limit.
-    pub(crate) fn limit(&self, wanted: &Command<T>, applied: &Command<T>) -> bool {
-        wanted != applied && self.apply(wanted) != *wanted
-    }
-
     /// Thrust, and torque about b1, b2 and b3, as shares of what all rotors together could give of
     /// each alone: what mixers that work with normalized numbers take.
     #[must_use]

@@ -137,8 +137,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
         self.last = either!(&mut self.law, supervisor => {
             let controller::Output { command, mode, fault, warning } = supervisor.step(measured, request);
-            let actuators = supervisor.sampler().actuation();
-            let limited = supervisor.solution().is_some_and(|law| actuators.limit(&law.command, &command));
+            let limited = supervisor.solution().is_some() && supervisor.sampler().is_limited();
             Output { command, mode, fault, warning, limited }
         });
         &self.last

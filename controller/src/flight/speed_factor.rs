@@ -25,11 +25,10 @@ const STOPPED: f64 = 1e-3;
 const MOST: f64 = 2.0;
 
 /// e^(−a t) (a t)ᵏ/k!: what a time leaves of the lags' deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Decay<T>([T; LAGS]);
 
 impl<T: Real> Decay<T> {
-    // Rarely called: once is enough in the code.
-    #[inline(never)]
     fn over(time: T) -> Self {
         let x = time * T::lit(RATE);
         let mut decay = [(-x).exp(); LAGS];
@@ -64,15 +63,24 @@ pub(crate) struct SpeedFactor<T> {
     /// Of each lag's output from what is wished; r is the last one's.
     deviations: [T; LAGS],
     is_settled: bool,
+    /// Over a control period, and as far as the law looks ahead.
+    period: Decay<T>,
+    horizon: Decay<T>,
 }
 
 impl<T: Real> SpeedFactor<T> {
-    /// 1.
-    pub(crate) fn none() -> Self {
-        let deviations = [T::zero(); LAGS];
-        let sign = T::one();
-        let (wished, after, is_backward, is_settled) = (sign, None, false, true);
-        Self { wished, after, is_backward, sign, deviations, is_settled }
+    /// 1, asked for every `period` s about `horizon` s later.
+    pub(crate) fn one(period: T, horizon: T) -> Self {
+        Self {
+            wished: T::one(),
+            after: None,
+            is_backward: false,
+            sign: T::one(),
+            deviations: [T::zero(); LAGS],
+            is_settled: true,
+            period: Decay::over(period),
+            horizon: Decay::over(horizon),
+        }
     }
 
     /// r now, negative on the way back.
@@ -127,16 +135,16 @@ impl<T: Real> SpeedFactor<T> {
         self.is_settled = false;
     }
 
-    /// `period` s on. Where the way turns in it, whether it is backward then, and
+    /// A period on. Where the way turns in it, whether it is backward then, and
     /// [`turned`](Self::turned) is to be told.
     #[inline]
-    pub(crate) fn advance(&mut self, period: T) -> Option<bool> {
-        if self.is_settled { None } else { self.change(period) }
+    pub(crate) fn advance(&mut self) -> Option<bool> {
+        if self.is_settled { None } else { self.change() }
     }
 
     #[cold]
-    fn change(&mut self, period: T) -> Option<bool> {
-        self.deviations = Decay::over(period).of(&self.deviations);
+    fn change(&mut self) -> Option<bool> {
+        self.deviations = self.period.of(&self.deviations);
         if self.after.is_some() {
             return self.turning();
         }
@@ -147,25 +155,25 @@ impl<T: Real> SpeedFactor<T> {
         None
     }
 
-    /// Brings the factor of `horizon` s from now into the outputs.
+    /// Brings the factor at the horizon into the outputs.
     #[inline(always)]
-    pub(crate) fn apply(&self, horizon: T, outputs: &mut Outputs<T>) {
+    pub(crate) fn apply(&self, outputs: &mut Outputs<T>) {
         if !self.is_settled || self.wished * self.sign != T::one() {
-            self.scale(horizon, outputs);
+            self.scale(outputs);
         }
     }
 
     // Apart: flight at v_d does without it.
     #[inline(never)]
-    fn scale(&self, horizon: T, outputs: &mut Outputs<T>) {
-        let missing = self.ahead(horizon) * -self.sign + T::one();
+    fn scale(&self, outputs: &mut Outputs<T>) {
+        let missing = self.ahead() * -self.sign + T::one();
         outputs.speed_error += outputs.prescribed * missing;
     }
 
-    /// r(t) about `horizon` s from now.
-    fn ahead(&self, horizon: T) -> Series<T, LAGS> {
+    /// r(t) about the horizon.
+    fn ahead(&self) -> Series<T, LAGS> {
         // Each derivative of a deviation is a times what the lag before has more.
-        let mut deviations = Decay::over(horizon).of(&self.deviations);
+        let mut deviations = self.horizon.of(&self.deviations);
         let mut derivatives = [T::zero(); LAGS];
         for order in 0..LAGS {
             derivatives[order] = deviations[LAGS - 1];
@@ -185,8 +193,8 @@ mod tests {
     #[test]
     fn factor_has_five_continuous_derivatives_and_does_not_overshoot() {
         let period = 0.002;
-        let mut factor = SpeedFactor::<f64>::none();
-        let mut last = factor.ahead(0.0);
+        let mut factor = SpeedFactor::<f64>::one(period, 0.0);
+        let mut last = factor.ahead();
         for step in 0..20_000 {
             // Wishes at odd moments, some in the middle of a change.
             let wish = [(700, 0.0), (1500, 1.0), (2100, 0.5), (9000, 1.3), (9001, 0.2)];
@@ -195,7 +203,7 @@ mod tests {
             }
             // What is wished reaches the sixth derivative alone: the present series continues the
             // last one.
-            let (now, expected) = (factor.ahead(0.0), last.shift(period));
+            let (now, expected) = (factor.ahead(), last.shift(period));
             for k in 0..LAGS {
                 // The sixth derivative is at most a⁶ (1 + 1)⁶ = 4096 per unit of change: what it
                 // adds within a period.
@@ -204,7 +212,7 @@ mod tests {
                 assert!(error <= bound, "step {step}, order {k}: {error:e}");
             }
             assert!(factor.value() <= 1.3 + 1e-12 && factor.value() >= -1e-12, "step {step}");
-            assert_eq!(factor.advance(period), None);
+            assert_eq!(factor.advance(), None);
             last = now;
         }
         assert_eq!(factor.value(), 0.2);
@@ -212,12 +220,12 @@ mod tests {
 
     #[test]
     fn the_way_turns_when_it_stands() {
-        let mut factor = SpeedFactor::<f64>::none();
+        let mut factor = SpeedFactor::<f64>::one(0.002, 0.0);
         factor.wish(-0.5);
         let mut turns = 0;
         for _ in 0..20_000 {
             let before = factor.value();
-            if let Some(is_backward) = factor.advance(0.002) {
+            if let Some(is_backward) = factor.advance() {
                 assert!(is_backward && before.abs() < 0.01, "{before}");
                 factor.turned(false);
                 turns += 1;
@@ -228,12 +236,12 @@ mod tests {
 
     #[test]
     fn factor_changes_as_fast_as_stated() {
-        let mut factor = SpeedFactor::<f64>::none();
+        let mut factor = SpeedFactor::<f64>::one(0.002, 0.0);
         factor.wish(0.0);
         let mut fastest = 0.0_f64;
         for _ in 0..3000 {
-            fastest = fastest.max(factor.ahead(0.0).derivative(1).abs());
-            factor.advance(0.002);
+            fastest = fastest.max(factor.ahead().derivative(1).abs());
+            factor.advance();
         }
         // a 5⁵ e⁻⁵/5!.
         assert!((fastest - 0.351).abs() < 1e-3, "{fastest}");

@@ -17,6 +17,7 @@ use crate::law::solution::{Solution, dot};
 use crate::law::{Ahead, Law};
 use crate::path::{Outputs, Path};
 use crate::ranges::BANDWIDTH;
+use crate::sampled::sampler::Sampling;
 
 /// The gains of (5.3), low order first: ν = −K ξ − (K̃ ξ̃, 0).
 ///
@@ -200,12 +201,13 @@ pub struct Follow<T, P> {
 
 impl<T: Real, P: Path<T>> Follow<T, P> {
     /// On `path` with `gains` that are found stable. ξ̃ is kept for the sample and the law acts
-    /// `lead` s later: ξ̃(lead) = ξ̃ + lead · h.
+    /// half a hold later: ξ̃ + h · half.
     ///
     /// # Errors
     /// The first output whose loop is not stable.
-    pub(crate) fn new(path: P, mut gains: Gains<T>, lead: T) -> Result<Self, GainError<T>> {
+    pub(crate) fn new(path: P, mut gains: Gains<T>, sampling: &Sampling<T>) -> Result<Self, GainError<T>> {
         gains.check()?;
+        let lead = sampling.half_hold();
         gains.k1[0] += gains.integral[0] * lead;
         gains.k2[0] += gains.integral[1] * lead;
         gains.k3[0] += gains.integral[2] * lead;
@@ -216,7 +218,7 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
             solution: Solution::default(),
             unsaturated: T::lit(RECOVERY),
             approach: Approach::none(),
-            speed_factor: SpeedFactor::none(),
+            speed_factor: SpeedFactor::one(sampling.period, sampling.horizon()),
             prescribed: T::zero(),
             rested: T::zero(),
         })
@@ -293,7 +295,7 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
             self.approach.fade(&fading, &mut outputs);
         }
         self.prescribed = outputs.prescribed.value();
-        self.speed_factor.apply(*horizon, &mut outputs);
+        self.speed_factor.apply(&mut outputs);
         let yaw = Yaw::of(state);
         self.solution.read(&self.gains, &self.integral, &yaw, &outputs);
         self.solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
@@ -308,7 +310,7 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     fn accept(&mut self, period: T, is_saturated: bool) {
         self.approach.advance(period);
         self.rest(period);
-        if let Some(is_backward) = self.speed_factor.advance(period) {
+        if let Some(is_backward) = self.speed_factor.advance() {
             let has_own = self.path.set_backward(is_backward);
             self.speed_factor.turned(has_own);
         }

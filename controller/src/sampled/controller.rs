@@ -50,7 +50,7 @@ impl<T: Real, P: Path<T>> Controller<T, Follow<T, P>> {
     /// A parameter of `sampling` is out of range, or an output's loop is not stable.
     pub fn new(vehicle: Vehicle<T>, path: P, gains: Gains<T>, sampling: Sampling<T>) -> Result<Self, SetupError<T>> {
         let sampler = Sampler::new(vehicle, &sampling)?;
-        Ok(Self { law: Follow::new(path, gains, sampling.half_hold())?, sampler, is_started: false })
+        Ok(Self { law: Follow::new(path, gains, &sampling)?, sampler, is_started: false })
     }
 }
 

@@ -73,7 +73,7 @@ impl<T: Real> Sampling<T> {
     }
 
     /// From the sample to when the law is evaluated for.
-    fn horizon(&self) -> T {
+    pub(crate) fn horizon(&self) -> T {
         if self.look_ahead { self.latency + self.rotor_lag + self.half_hold() } else { T::zero() }
     }
 }
@@ -108,6 +108,8 @@ struct Memory<T> {
     fade: T,
     /// The last command's thrust was not what the actuators could apply.
     is_saturated: bool,
+    /// The last command before its limits.
+    asked: Command<T>,
     actuators: Actuators<T>,
     observer: Observer<T>,
 }
@@ -130,6 +132,7 @@ impl<T: Real> Sampler<T> {
             bump: Command::zero(),
             fade: (-period / T::lit(TAKE_OVER)).exp(),
             is_saturated: false,
+            asked: hover,
             actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
             observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
         };
@@ -251,6 +254,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.actuators.applied()
     }
 
+    /// Whether the last command was more than the actuators could apply.
+    pub fn is_limited(&self) -> bool {
+        self.memory.actuators.sent(0) != self.memory.asked
+    }
+
     /// What turns commands into thrust and torque.
     pub fn actuation(&self) -> &A {
         &self.actuation
@@ -337,6 +345,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.bump = self.memory.bump.times(self.memory.fade);
         let applied = self.send(&smooth);
         self.memory.is_saturated = applied.thrust != smooth.thrust;
+        self.memory.asked = smooth;
         self.memory.zeta = propagate(&self.memory.zeta, u_zeta, self.memory.period);
         let missing = command.thrust - applied.thrust;
         self.memory.zeta[0] += missing * alignment * self.memory.vehicle.per_total_mass();

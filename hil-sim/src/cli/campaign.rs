@@ -105,7 +105,7 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
         runs,
         seed: arguments.many.seed,
         shard: arguments.shard.unwrap_or(Shard::WHOLE),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
+        build: env!("BUILD").to_owned(),
     };
     common.tried()?;
     let pool = arguments.many.pool()?;

@@ -178,11 +178,9 @@ pub fn fly(
         }
         let read = match &mut sight {
             Some(sight) => sight.see(&world, &applied),
-            None => world.read(),
+            None => world.read(&state),
         };
-        let decision = if let Some(last) = last.filter(|_| world.misses()) {
-            last
-        } else {
+        if last.is_none() || !world.misses() {
             if last.is_none() {
                 match plan.entry {
                     Entry::Stated => pilot.start(&read, zeta),
@@ -190,14 +188,13 @@ pub fn fly(
                 }
             }
             // A controller counts its periods.
-            let Some(decision) = pilot.step(&read, step as f64 * period) else {
-                end = End::Unanswered(t_s);
-                break;
-            };
-            decision
+            last = pilot.step(&read, step as f64 * period);
+        }
+        let Some(decision) = &last else {
+            end = End::Unanswered(t_s);
+            break;
         };
-        last = Some(decision);
-        watch(&Moment { decision: Some(&decision), sight: sight.as_ref(), ..seen });
+        watch(&Moment { decision: Some(decision), sight: sight.as_ref(), ..seen });
         applied = decision.command;
         world.advance(&applied);
         step += 1;

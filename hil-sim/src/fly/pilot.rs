@@ -152,8 +152,13 @@ impl<T: Real> Pilot<T> {
 /// ξ's parts one after the other.
 pub(crate) fn padded<T: Real>(parts: [&[T]; 4]) -> [f64; 20] {
     let mut xi = [0.0; 20];
-    for (slot, &value) in xi.iter_mut().zip(parts.into_iter().flatten()) {
-        *slot = value.cast();
+    let mut rest = &mut xi[..];
+    for part in parts {
+        let (slots, left) = rest.split_at_mut(part.len());
+        for (slot, &value) in slots.iter_mut().zip(part) {
+            *slot = value.cast();
+        }
+        rest = left;
     }
     xi
 }

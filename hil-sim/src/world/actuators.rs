@@ -176,6 +176,9 @@ impl ActuatorModel {
         if self.actuators.lag_s == 0.0 {
             return self.target;
         }
+        if dt == 0.0 {
+            return self.given;
+        }
         let kept = libm::exp(-dt / self.actuators.lag_s);
         Command {
             thrust: self.target.thrust + (self.given.thrust - self.target.thrust) * kept,

@@ -147,13 +147,19 @@ impl Body {
     /// Position of the UAV in N, m.
     #[must_use]
     pub fn uav_position(&self) -> Vector3<f64> {
-        self.bodies().uav_position
+        match self {
+            Self::Rod(body) => body.uav_position(),
+            Self::Cable(body) => body.bodies().uav_position,
+        }
     }
 
     /// Velocity of the UAV in N, m/s.
     #[must_use]
     pub fn uav_velocity(&self) -> Vector3<f64> {
-        self.bodies().uav_velocity
+        match self {
+            Self::Rod(body) => body.uav_velocity(),
+            Self::Cable(body) => body.bodies().uav_velocity,
+        }
     }
 
     /// Whether the cable pulls; a rod always counts as taut.

@@ -197,10 +197,10 @@ impl World {
         self.actuators.given().thrust
     }
 
-    /// The state now, read by the sensors. Once a period.
+    /// The body's `state` now, read by the sensors. Once a period.
     #[inline]
-    pub fn read(&mut self) -> State<f64> {
-        self.sensors.read(self.t_s, &self.body.state())
+    pub fn read(&mut self, state: &State<f64>) -> State<f64> {
+        self.sensors.read(self.t_s, state)
     }
 
     /// Whether the controller misses this sample. At most once a period.

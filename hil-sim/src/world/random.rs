@@ -1,11 +1,15 @@
 //! Random numbers whose values are the same on every machine and in every order of flights.
 //!
-//! Each purpose of each flight has a ChaCha stream of its own, so a gust does not depend on whether
-//! a sensor is noisy. Logarithms come from libm, whose last bit does not depend on the platform.
+//! Each purpose of each flight has a stream of its own, so a gust does not depend on whether a
+//! sensor is noisy: xoshiro256++ from a start that ChaCha draws. Logarithms come from libm, whose
+//! last bit does not depend on the platform.
+
+use std::sync::LazyLock;
 
 use controller::Vector3;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// What a stream is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +42,8 @@ pub enum Purpose {
 /// A seeded stream of random numbers.
 #[derive(Clone, Debug)]
 pub struct Stream {
-    source: ChaCha8Rng,
-    /// The second of the last pair of normal numbers.
-    spare: Option<f64>,
+    source: Xoshiro256PlusPlus,
+    layers: &'static Ziggurat,
 }
 
 impl Stream {
@@ -50,9 +53,9 @@ impl Stream {
         let mut key = [0; 32];
         key[..8].copy_from_slice(&seed.to_le_bytes());
         key[8..16].copy_from_slice(&run.to_le_bytes());
-        let mut source = ChaCha8Rng::from_seed(key);
-        source.set_stream(purpose as u64);
-        Self { source, spare: None }
+        let mut start = ChaCha8Rng::from_seed(key);
+        start.set_stream(purpose as u64);
+        Self { source: Xoshiro256PlusPlus::from_rng(&mut start), layers: Ziggurat::shared() }
     }
 
     /// Uniform in [0, 1), in steps of 2⁻⁵³.
@@ -81,18 +84,41 @@ impl Stream {
         }
     }
 
-    /// Standard normal, by Marsaglia's polar method.
+    /// Standard normal.
+    #[inline]
     pub fn normal(&mut self) -> f64 {
-        if let Some(spare) = self.spare.take() {
-            return spare;
-        }
+        let layers = self.layers;
         loop {
-            let (x, y) = (self.uniform(-1.0, 1.0), self.uniform(-1.0, 1.0));
-            let s = x * x + y * y;
-            if s < 1.0 && s > 0.0 {
-                let scale = (-2.0 * libm::log(s) / s).sqrt();
-                self.spare = Some(y * scale);
-                return x * scale;
+            let bits = self.source.next_u64();
+            // The layer from the lowest bits, the place in it from the 53 highest.
+            let layer = (bits & 0xff) as usize;
+            let x = (bits.cast_signed() >> 11) as f64 * layers.step[layer];
+            if x.abs() < layers.width[layer + 1] {
+                return x;
+            }
+            if let Some(x) = self.beside(layer, x) {
+                return x;
+            }
+        }
+    }
+
+    /// What becomes of an `x` in its layer, but not below the layer above: one of 80.
+    #[cold]
+    fn beside(&mut self, layer: usize, x: f64) -> Option<f64> {
+        if layer == 0 {
+            return Some(self.tail().copysign(x));
+        }
+        let Ziggurat { density, .. } = self.layers;
+        let height = density[layer] + self.unit() * (density[layer + 1] - density[layer]);
+        (height < bell(x)).then_some(x)
+    }
+
+    /// A normal number beyond [`TAIL`], by Marsaglia's method.
+    fn tail(&mut self) -> f64 {
+        loop {
+            let beyond = -libm::log(1.0 - self.unit()) / TAIL;
+            if -2.0 * libm::log(1.0 - self.unit()) >= beyond * beyond {
+                return TAIL + beyond;
             }
         }
     }
@@ -101,6 +127,49 @@ impl Stream {
     pub fn normals(&mut self) -> Vector3<f64> {
         let [x, y, z] = [(); 3].map(|()| self.normal());
         Vector3::new(x, y, z)
+    }
+}
+
+/// e^(−x²/2).
+fn bell(x: f64) -> f64 {
+    libm::exp(-0.5 * x * x)
+}
+
+/// Layers of equal area under e^(−x²/2), x > 0.
+const LAYERS: usize = 256;
+/// Where the tail begins, which is part of the lowest layer.
+const TAIL: f64 = 3.654_152_885_361_009;
+
+/// Marsaglia's and Tsang's ziggurat (Journal of Statistical Software 5(8), 2000): `LAYERS` of equal
+/// area. It is of our own because a crate's takes logarithms from the platform.
+#[derive(Debug)]
+struct Ziggurat {
+    /// Half width of each layer, and 0 above the last.
+    width: [f64; LAYERS + 1],
+    /// The same in steps of 2⁻⁵².
+    step: [f64; LAYERS + 1],
+    /// e^(−x²/2) at each width.
+    density: [f64; LAYERS + 1],
+}
+
+impl Ziggurat {
+    fn shared() -> &'static Self {
+        static SHARED: LazyLock<Ziggurat> = LazyLock::new(Ziggurat::new);
+        &SHARED
+    }
+
+    fn new() -> Self {
+        // The rectangle below the tail's start, and the tail.
+        let area = TAIL * bell(TAIL) + (0.5 * std::f64::consts::PI).sqrt() * libm::erfc(TAIL * 0.5_f64.sqrt());
+        let mut width = [0.0; LAYERS + 1];
+        // As wide as if the lowest layer were a rectangle: what is beyond the tail's start is tail.
+        width[0] = area / bell(TAIL);
+        width[1] = TAIL;
+        for layer in 2..LAYERS {
+            let below = width[layer - 1];
+            width[layer] = (-2.0 * libm::log(bell(below) + area / below)).sqrt();
+        }
+        Self { width, step: width.map(|width| width / (1_u64 << 52) as f64), density: width.map(bell) }
     }
 }
 
@@ -126,6 +195,39 @@ mod tests {
         assert!(cube.abs() < 0.0434 && (fourth - 3.0).abs() < 0.11, "{cube} {fourth}");
         let share = f64::from(beyond) / f64::from(count);
         assert!((share - 0.0455).abs() < 0.0024, "{share}");
+    }
+
+    /// Shares beyond limits in the layers, at the tail's start and in the tail, on either side.
+    #[test]
+    fn normals_are_as_frequent_as_the_error_function_says() {
+        let mut stream = Stream::new(8, 0, Purpose::Sensor);
+        let count = 2_000_000;
+        let limits = [0.0, 0.1, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, TAIL, 4.0];
+        let mut beyond = [[0.0; 2]; 11];
+        for _ in 0..count {
+            let x = stream.normal();
+            for (counts, limit) in beyond.iter_mut().zip(limits) {
+                counts[usize::from(x < 0.0)] += f64::from(u8::from(x.abs() > limit));
+            }
+        }
+        for (counts, limit) in beyond.into_iter().zip(limits) {
+            let share = 0.5 * libm::erfc(limit * 0.5_f64.sqrt());
+            let expected = share * f64::from(count);
+            // Five standard errors of a count.
+            let bound = 5.0 * (expected * (1.0 - share)).sqrt();
+            assert!(counts.iter().all(|count| (count - expected).abs() < bound), "{limit}: {counts:?}, {expected}");
+        }
+    }
+
+    #[test]
+    fn layers_have_one_area() {
+        let Ziggurat { width, density, .. } = Ziggurat::new();
+        let area = width[1] * (density[2] - density[1]);
+        for layer in 1..LAYERS {
+            let this = width[layer] * (density[layer + 1] - density[layer]);
+            // The tail's start has sixteen digits, and each layer hands on its rounding.
+            assert!((this / area - 1.0).abs() < 1e-9, "{layer}: {this} {area}");
+        }
     }
 
     #[test]

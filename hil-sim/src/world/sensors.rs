@@ -121,8 +121,9 @@ impl Channel {
         if self.noise > 0.0 { bias + stream.normals() * self.noise } else { bias }
     }
 
-    fn round(&self, value: f64) -> f64 {
-        if self.quantum > 0.0 { libm::rint(value / self.quantum) * self.quantum } else { value }
+    fn round(&self, value: Vector3<f64>) -> Vector3<f64> {
+        let Self { quantum, .. } = *self;
+        if quantum > 0.0 { value.map(|x| libm::rint(x / quantum) * quantum) } else { value }
     }
 
     /// How far back, as a share of the last period, the sample was taken.
@@ -130,13 +131,14 @@ impl Channel {
         if self.jitter_s > 0.0 { stream.uniform(0.0, self.jitter_s / period) } else { 0.0 }
     }
 
-    /// Replaces a reading of `N` numbers by what the channel's faults make of it.
-    fn fail<const N: usize>(&self, t_s: f64, reading: [f64; N], last: &[f64; N]) -> [f64; N] {
+    /// What the channel's faults make of a reading.
+    #[inline]
+    fn fail(&self, t_s: f64, reading: Vector3<f64>, last: &Vector3<f64>) -> Vector3<f64> {
         let now = |window: &Option<Window>| window.is_some_and(|window| window.contains(t_s));
         if now(&self.nan) {
-            [f64::NAN; N]
+            Vector3::repeat(f64::NAN)
         } else if now(&self.drop_out) {
-            [0.0; N]
+            Vector3::zeros()
         } else if now(&self.freeze) {
             *last
         } else {
@@ -215,58 +217,61 @@ impl SensorModel {
         if self.perfect {
             return *state;
         }
-        let Sensors { position, velocity, rod, rod_rate, attitude, body_rate, .. } = self.sensors;
-        let rod_read = {
-            let aged = self.aged(&rod, &state.rod, &{ self.before.rod });
-            let turned = aged + rod.error(&mut self.stream).cross(&aged);
+        let Self { sensors, period, stream, before, last, .. } = self;
+        let mut sample = Sample { t_s, period: *period, stream };
+        let rod = {
+            let channel = &sensors.rod;
+            let aged = sample.aged(channel, &state.rod, &before.rod);
+            let turned = aged + channel.error(sample.stream).cross(&aged);
             let unit = turned / turned.dot(&turned).sqrt();
-            Vector3::from(rod.fail(t_s, unit.map(|x| rod.round(x)).into(), self.last.rod.as_ref()))
+            channel.fail(t_s, channel.round(unit), &last.rod)
         };
-        let attitude_read = {
-            let age = attitude.age(self.period, &mut self.stream);
-            let aged = state.attitude + (self.before.attitude - state.attitude) * age;
-            let turned = orthonormal(&(aged * turn(&attitude.error(&mut self.stream))));
-            let columns: [[f64; 3]; 3] = turned.map(|x| attitude.round(x)).into();
-            let last: [[f64; 3]; 3] = self.last.attitude.into();
-            let [c1, c2, c3] = columns.map(Vector3::from);
-            let failed = [c1, c2, c3].map(<[f64; 3]>::from);
-            Matrix3::from_columns(&[
-                Vector3::from(attitude.fail(t_s, failed[0], &last[0])),
-                Vector3::from(attitude.fail(t_s, failed[1], &last[1])),
-                Vector3::from(attitude.fail(t_s, failed[2], &last[2])),
-            ])
+        let attitude = {
+            let channel = &sensors.attitude;
+            let age = channel.age(sample.period, sample.stream);
+            let aged = state.attitude + (before.attitude - state.attitude) * age;
+            let turned = orthonormal(&(aged * turn(&channel.error(sample.stream))));
+            let column =
+                |i| channel.fail(t_s, channel.round(turned.column(i).into()), &last.attitude.column(i).into());
+            Matrix3::from_columns(&[column(0), column(1), column(2)])
         };
-        let across = |rate: Vector3<f64>| rate - rod_read * rod_read.dot(&rate);
-        let read = State {
-            position: self.vector(&position, t_s, |state| &state.position, state),
-            velocity: self.vector(&velocity, t_s, |state| &state.velocity, state),
-            rod: rod_read,
-            rod_rate: across(self.vector(&rod_rate, t_s, |state| &state.rod_rate, state)),
-            attitude: attitude_read,
-            body_rate: self.vector(&body_rate, t_s, |state| &state.body_rate, state),
-        };
+        let position = sample.vector(&sensors.position, &state.position, &before.position, &last.position);
+        let velocity = sample.vector(&sensors.velocity, &state.velocity, &before.velocity, &last.velocity);
+        let rate = sample.vector(&sensors.rod_rate, &state.rod_rate, &before.rod_rate, &last.rod_rate);
+        let rod_rate = rate - rod * rod.dot(&rate);
+        let body_rate = sample.vector(&sensors.body_rate, &state.body_rate, &before.body_rate, &last.body_rate);
         self.before = *state;
-        self.last = read;
-        read
+        self.last = State { position, velocity, rod, rod_rate, attitude, body_rate };
+        self.last
     }
+}
 
+/// One sample of all channels.
+struct Sample<'a> {
+    t_s: f64,
+    period: f64,
+    stream: &'a mut Stream,
+}
+
+impl Sample<'_> {
     /// The value of a channel at its sample time.
+    #[inline]
     fn aged(&mut self, channel: &Channel, now: &Vector3<f64>, before: &Vector3<f64>) -> Vector3<f64> {
-        let age = channel.age(self.period, &mut self.stream);
+        let age = channel.age(self.period, self.stream);
         now + (before - now) * age
     }
 
+    /// What a channel reads of `now`, which was `before` at the sample before, when it read `last`.
+    #[inline]
     fn vector(
         &mut self,
         channel: &Channel,
-        t_s: f64,
-        part: fn(&State<f64>) -> &Vector3<f64>,
-        state: &State<f64>,
+        now: &Vector3<f64>,
+        before: &Vector3<f64>,
+        last: &Vector3<f64>,
     ) -> Vector3<f64> {
-        let before = *part(&self.before);
-        let value = self.aged(channel, part(state), &before) + channel.error(&mut self.stream);
-        let rounded = value.map(|x| channel.round(x));
-        Vector3::from(channel.fail(t_s, rounded.into(), part(&self.last).as_ref()))
+        let value = self.aged(channel, now, before) + channel.error(self.stream);
+        channel.fail(self.t_s, channel.round(value), last)
     }
 }
 

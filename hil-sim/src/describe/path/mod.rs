@@ -134,7 +134,10 @@ impl PathSpec {
     /// [`Refusal`] with the place where it can't.
     pub fn check(&self, vehicle: &Vehicle<f64>, limits: &Limits) -> Result<Report, Refusal> {
         match &self.kind {
-            PathKind::Profiled(spec) => check::check(&mut self.searched(spec.hint())?, vehicle, limits, spec.hint()),
+            PathKind::Profiled(spec) => {
+                let lap = self.lap()?.clone();
+                check::check(&mut self.searched(spec.hint())?, lap, vehicle, limits)
+            }
             PathKind::Route(spec) => {
                 check::route::check(&mut spec.built()?, spec.waypoints(), spec.is_closed(), vehicle, limits)
             }

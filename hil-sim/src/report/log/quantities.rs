@@ -223,8 +223,7 @@ fn paper(record: &Record, places: [usize; 3]) -> Numbers {
 
 /// (w, x, y, z) of a rotation.
 fn quaternion(rotation: &Matrix3<f64>) -> Numbers {
-    let matrix = linalg::Matrix3::from_column_slice(rotation.as_slice());
-    let rotation = linalg::Rotation3::from_matrix_unchecked(matrix);
-    let q = linalg::UnitQuaternion::from_rotation_matrix(&rotation);
+    let rotation = nalgebra::Rotation3::from_matrix_unchecked(*rotation);
+    let q = nalgebra::UnitQuaternion::from_rotation_matrix(&rotation);
     Some([q.w, q.i, q.j, q.k])
 }

@@ -24,9 +24,10 @@ pub use replay::{Replay, replay};
 pub use store::{Identity, Shard, Store, StoreError, merge};
 pub use summary::{Summary, summarize};
 
-use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use crate::describe::input::Invalid;
 use crate::fly::flight::Control;
@@ -48,9 +49,6 @@ pub enum CampaignError {
     Store(#[from] StoreError),
 }
 
-/// Flights between two writes of the table.
-const BLOCK: usize = 64;
-
 /// Flies what is left of the campaign that `identity` names, keeping its table in `folder`, and
 /// returns the rows that are done: all of them, unless `stop` became true. `progress` gets the
 /// number of flights done, those found in the folder at once.
@@ -64,31 +62,67 @@ pub fn run(
     stop: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Vec<Row>, CampaignError> {
-    let (mut store, mut rows) = Store::open(folder, identity)?;
+    let (store, rows) = Store::open(folder, identity)?;
     progress(rows.len() as u64);
     let left: Vec<u64> = identity.shard.runs(identity.runs).skip(rows.len()).collect();
-    for block in left.chunks(BLOCK) {
-        let flown: Vec<Option<Row>> = block
-            .par_iter()
-            .map(|&run| {
-                if stop.load(Ordering::Relaxed) {
-                    return Ok(None);
+    let next = AtomicUsize::new(0);
+    let table = Mutex::new(Table { store, rows, done: 0, early: BTreeMap::new(), failure: None });
+    let locked = || table.lock().unwrap_or_else(PoisonError::into_inner);
+    // Each thread takes the next flight that nobody flies, so none waits for another's.
+    rayon::broadcast(|_| {
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(&run) = left.get(index) else { break };
+            if stop.load(Ordering::Relaxed) || locked().failure.is_some() {
+                break;
+            }
+            let control = Control { stop, progress: &|_| {} };
+            match fly_run(campaign, Seed { batch: identity.seed, run }, control, &mut |_| {}) {
+                Ok(Some(row)) => {
+                    progress(1);
+                    locked().take(index, row);
                 }
-                let control = Control { stop, progress: &|_| {} };
-                let row = fly_run(campaign, Seed { batch: identity.seed, run }, control, &mut |_| {})
-                    .map_err(|invalid| CampaignError::Flight { run, invalid })?;
-                progress(u64::from(row.is_some()));
-                Ok(row)
-            })
-            .collect::<Result<_, CampaignError>>()?;
+                Ok(None) => break,
+                Err(invalid) => locked().fail(index, CampaignError::Flight { run, invalid }),
+            }
+        }
+    });
+    let Table { rows, failure, .. } = table.into_inner().unwrap_or_else(PoisonError::into_inner);
+    match failure {
+        Some((_, error)) => Err(error),
         // Rows after a gap that an interruption left are flown again.
-        let done: Vec<Row> = flown.into_iter().map_while(|row| row).collect();
-        store.append(&done)?;
-        let interrupted = done.len() < block.len();
-        rows.extend(done);
-        if interrupted {
-            break;
+        None => Ok(rows),
+    }
+}
+
+/// The table under way: flights end in any order, and are kept in theirs.
+struct Table {
+    store: Store,
+    rows: Vec<Row>,
+    /// Flights kept since the start.
+    done: usize,
+    /// Those that ended before one that comes before them.
+    early: BTreeMap<usize, Row>,
+    /// Of the first flight that failed.
+    failure: Option<(usize, CampaignError)>,
+}
+
+impl Table {
+    fn take(&mut self, index: usize, row: Row) {
+        self.early.insert(index, row);
+        let first = self.rows.len();
+        while let Some(row) = self.early.remove(&self.done) {
+            self.rows.push(row);
+            self.done += 1;
+        }
+        if let Err(error) = self.store.append(&self.rows[first..]) {
+            self.fail(index, error.into());
         }
     }
-    Ok(rows)
+
+    fn fail(&mut self, index: usize, error: CampaignError) {
+        if self.failure.as_ref().is_none_or(|(first, _)| index < *first) {
+            self.failure = Some((index, error));
+        }
+    }
 }

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -21,8 +22,26 @@ pub struct Identity {
     pub seed: u64,
     /// Which part of it: flights whose number leaves `index` when divided by `of`.
     pub shard: Shard,
-    /// Version of the program.
-    pub version: String,
+    /// Version and hash of the sources that the program was built from.
+    pub build: String,
+}
+
+impl Identity {
+    /// What makes this another campaign than `other`; `None` if it is the same, or a part of the
+    /// same.
+    fn differs(&self, other: &Self) -> Option<String> {
+        if self.campaign != other.campaign {
+            return Some("the campaign's file differs".to_owned());
+        }
+        let named = |name: &str, ours: &dyn Display, theirs: &dyn Display| {
+            let (ours, theirs) = (ours.to_string(), theirs.to_string());
+            (ours != theirs).then(|| format!("the {name} differs: {theirs}, not {ours}"))
+        };
+        named("number of flights", &self.runs, &other.runs)
+            .or_else(|| named("seed", &self.seed, &other.seed))
+            .or_else(|| named("number of shards", &self.shard.of, &other.shard.of))
+            .or_else(|| named("program", &self.build, &other.build))
+    }
 }
 
 /// A part of a campaign.
@@ -85,8 +104,10 @@ impl Store {
         let known = folder.join("campaign.json");
         let rows = match read_identity(folder)? {
             Some(other) if other == *identity => read_rows(&path, identity)?,
-            Some(_) => {
-                let message = "another campaign's results are here: give another folder, or delete it".to_owned();
+            Some(other) => {
+                let why = identity.differs(&other).unwrap_or_else(|| "the shard differs".to_owned());
+                let message =
+                    format!("another campaign's results are here ({why}): give another folder, or delete it");
                 return Err(StoreError::Contents { path: known, message });
             }
             None if path.exists() => {
@@ -179,8 +200,8 @@ pub fn merge(folders: &[PathBuf]) -> Result<(Identity, Vec<Row>), StoreError> {
         }
         // All but which part of it.
         let identity = Identity { shard: Shard { index: 0, of }, ..identity };
-        if *whole.get_or_insert_with(|| identity.clone()) != identity {
-            return Err(wrong(folder, "not of the same campaign, seed, number of flights and of shards".to_owned()));
+        if let Some(why) = whole.get_or_insert_with(|| identity.clone()).differs(&identity) {
+            return Err(wrong(folder, format!("not of the same campaign: {why}")));
         }
         if let Some(other) = places.insert(index, folder) {
             return Err(wrong(

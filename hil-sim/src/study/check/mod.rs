@@ -81,19 +81,17 @@ pub const SLOWEST: f64 = 0.05;
 /// Nodes above which not each is asked at each speed.
 const MANY: usize = 20_000;
 
-/// Walks `path` from the point found near `hint` (N, m) and says what a lap asks of `vehicle`.
+/// Says what a `lap` of `path` asks of `vehicle`.
 ///
 /// # Errors
-/// [`Refusal`] with the place, if the curve is not closed, smooth, regular and free of
-/// self-crossings, if the speed vanishes on it, or if no thrust can give the motion.
+/// [`Refusal`] with the place, if the curve is not free of self-crossings, if the speed vanishes on
+/// it, or if no thrust can give the motion.
 pub fn check<P: Path<f64> + ?Sized>(
     path: &mut P,
+    lap: Lap,
     vehicle: &Vehicle<f64>,
     limits: &Limits,
-    hint: Vector3<f64>,
 ) -> Result<Report, Refusal> {
-    let start = walk::find(path, hint)?;
-    let lap = walk::walk(path, start)?;
     let branches = lap.branches()?;
 
     let motions = motions(path, &lap)?;

@@ -23,7 +23,7 @@ use crate::study::check::walk::walk;
 use crate::study::check::{Approach, Lap, Refusal};
 use controller::{Curve, FourierPath, Harmonics};
 use controller::{OutOfRange, Vector3};
-use linalg::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Most harmonics of a path that can be flown.

@@ -7,7 +7,7 @@
 
 use controller::Harmonics;
 use controller::Vector3;
-use linalg::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::MAX_HARMONICS;
 
