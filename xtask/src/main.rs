@@ -3,12 +3,14 @@
 use clap::{Parser, Subcommand};
 
 mod callgraph;
+mod cycles;
 mod dist;
 mod emulator;
 mod image;
 mod object;
 mod report;
 mod sbom;
+mod simulator;
 mod target;
 mod thumb;
 mod toolchain;
@@ -23,8 +25,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measures the control step on the emulated Cortex-M4F and M7, and proves that host and target
-    /// agree bit for bit.
+    /// Measures the control step on the emulated Cortex-M4F and M7 in instructions, and in cycles by
+    /// the published timings, and proves that host and target agree bit for bit.
     #[command(after_help = "Fails if a number exceeds firmware/bench/expected.json or a proof does not hold.\n\n\
         Examples:\n  cargo xtask target\n  cargo xtask target --json\n  cargo xtask target --refresh")]
     Target {
@@ -35,6 +37,9 @@ enum Command {
         #[arg(long)]
         refresh: bool,
     },
+    /// Counts what a control period of a campaign's flight costs the host.
+    #[command(after_help = "Needs valgrind, and a release build.\n\nExample:\n  cargo xtask simulator")]
+    Simulator,
     /// Builds the C interface as one relocatable object, into dist/.
     #[command(after_help = "Needs binutils for the machine (Debian: binutils-arm-none-eabi).\n\n\
         Examples:\n  cargo xtask object\n  cargo xtask object host cortex-m7")]
@@ -67,6 +72,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Target { json, refresh } => target::run(json, refresh),
+        Command::Simulator => simulator::run(),
         Command::Object { machines } => object::run(&machines),
         Command::Dist => dist::run(),
         Command::Reproduce { machines } => dist::reproduce(&machines),

@@ -11,7 +11,7 @@
 //! Unknown are k_T, c₁, c₂, c_L, the steady horizontal wind w, and l = (l₁, l₂, 0).
 
 use controller::Vector3;
-use linalg::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector};
 
 use super::log::Sample;
 

@@ -72,7 +72,7 @@ pub fn read(text: &str) -> Result<Vec<Sample>, LogError> {
 
 fn sample(n: &[f64]) -> Sample {
     let vector = |at: usize| Vector3::new(n[at], n[at + 1], n[at + 2]);
-    let q = linalg::UnitQuaternion::from_quaternion(linalg::Quaternion::new(n[1], n[2], n[3], n[4]));
+    let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(n[1], n[2], n[3], n[4]));
     let rotation = q.to_rotation_matrix();
     Sample {
         t_s: n[0],
