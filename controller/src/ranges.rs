@@ -85,8 +85,14 @@ pub const COAST: Range = Range::new("coast", 0.0, 10.0, 0.1);
 pub const SINK: Range = Range::new("lost", 0.0, 1.0, 0.9);
 /// [`Policy::calm`](crate::Policy::calm), s.
 pub const CALM: Range = Range::new("calm", 0.0, 100.0, 1.0);
+/// [`Policy::rise`](crate::Policy::rise), m/s.
+pub const RISE: Range = Range::new("rise", 0.01, 10.0, 0.4);
+/// [`Policy::clear`](crate::Policy::clear), m.
+pub const CLEAR: Range = Range::new("clear", 0.0, 1000.0, 1.0);
 /// [`Policy::descent`](crate::Policy::descent), m/s.
-pub const DESCENT: Range = Range::new("descent", 0.01, 10.0, 0.5);
+pub const DESCENT: Range = Range::new("descent", 0.01, 10.0, 0.4);
+/// [`Policy::aside`](crate::Policy::aside), m.
+pub const ASIDE: Range = Range::new("aside", 0.0, 100.0, 0.6);
 /// [`Policy::payload_lost`](crate::Policy::payload_lost), a share of the payload's mass; negative:
 /// never.
 pub const PAYLOAD_LOST: Range = Range::new("payload_lost", -1.0, 0.95, 0.3);

@@ -83,7 +83,7 @@ def pace():
     close(max(within), 1.0, 1e-12, "one limit is met, none exceeded")
 
 
-@covers("14.1", "14.2", "14.3", "14.4", "14.5")
+@covers("14.1", "14.2", "14.3", "14.4", "14.5", "14.8")
 def hold():
     car = TABLE_I
     for _ in range(20):
@@ -107,6 +107,14 @@ def hold():
     # (14.4) and (14.5) are laws, not identities: their loops are stable without swing and with one-sided limits off.
     for coefficients in ([0.3, 1.0, 2.0], [64.0, 16.0]):
         assert all(root.real < 0 for root in roots(coefficients))
+    # (14.8): the determinant of x and s, against the polynomial that is wanted.
+    for omega, p, d in ((0.8, 0.8, 0.24), (2.2, 1.0, 0.3), (4.4, 0.7, 0.5)):
+        k_p, k_d = p * p, 2 * p + 2 * d * p * p / omega**2
+        k_s, k_q = 2 * d * (1 - p * p / omega**2), 4 * d * p
+        for sigma in (0.3, -1.1, 2.0, 0.7j, 1.0 - 0.4j):
+            given = (sigma**2 + k_d * sigma + k_p) * (sigma**2 + omega**2) + sigma**2 * (k_s * sigma + k_q)
+            wanted = (sigma**2 + 2 * d * sigma + omega**2) * (sigma + p) ** 2
+            assert abs(given - wanted) < 1e-12 * abs(wanted), "(14.8)"
 
 
 @covers("14.6", "14.7")

@@ -6,7 +6,7 @@ use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::judge::judge;
 use hil_sim::report::log::{Format, Record, Table, write};
 use hil_sim::study::calibrate::{Found, Known, LogError, Sample, calibrate, read};
-use hil_sim::study::campaign::{ApproachFields, Supervised};
+use hil_sim::study::campaign::{self, ApproachFields};
 use hil_sim::world::Seed;
 use std::path::Path;
 
@@ -43,7 +43,7 @@ fn in_wind(name: &str, path: &str, wind: [f64; 2]) -> Scenario {
 fn log(scenario: &Scenario, rod: f64) -> Vec<Sample> {
     let mut start = State::from_paper(&scenario.initial);
     start.rod = [libm::sin(rod), 0.0, libm::cos(rod)].into();
-    let mut pilot = Supervised::new(&scenario.controller, &ApproachFields::default()).ok().flatten().unwrap();
+    let mut pilot = campaign::pilot(&scenario.controller, &ApproachFields::default()).unwrap();
     let mut records = Vec::new();
     let seed = Seed { batch: 5, run: 0 };
     let outcome = judge(scenario, start, seed, None, Control::alone(), &mut pilot, &mut |moment| {

@@ -10,7 +10,10 @@ fn within<'a>(scenario: &'a mut Table, section: &Section) -> &'a mut Table {
     let name = section.table.split(',').next().unwrap_or_default();
     name.split('.').filter(|part| !part.is_empty()).fold(scenario, |table, part| {
         let entry = table.entry(part).or_insert_with(|| Table::new().into());
-        entry.as_table_mut().expect("a table")
+        match entry {
+            Value::Array(list) => list.first_mut().and_then(Value::as_table_mut).expect("a list of tables"),
+            table => table.as_table_mut().expect("a table"),
+        }
     })
 }
 

@@ -79,7 +79,7 @@ impl Episode {
     }
 
     fn observe(&mut self) -> [f32; OBSERVED] {
-        let state = self.world.read(&self.world.body().state());
+        let state = self.world.read(&self.world.body().state()).state;
         let [offset, wanted] = self.wanted(&state);
         let State { velocity, rod, rod_rate, attitude, body_rate, .. } = &state;
         let rows = attitude.transpose();

@@ -57,7 +57,7 @@ impl World {
     }
     /// The state through the sensors. Once a period.
     fn read(&mut self) -> State {
-        State(self.world.read(&self.world.body().state()))
+        State(self.world.read(&self.world.body().state()).state)
     }
     #[getter]
     fn pull(&self) -> f64 {

@@ -25,7 +25,7 @@ const fn band(
 /// Negative where the rotors are cut instead.
 const SINK: Range = Range::new(ranges::SINK.field, -1.0, ranges::SINK.max, ranges::SINK.default);
 
-pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<26>(&[
+pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<29>(&[
     &band(
         "ENV_ROD",
         ranges::ENVELOPE_ROD_ANGLE,
@@ -96,7 +96,10 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<26>(&[
         ),
         Entry::switch("POL_RESUME", "resume", true, "Go back to the path from hold without being asked again."),
         Entry::of("POL_CALM", ranges::CALM, "s", "How long the vehicle must have been calm for that."),
+        Entry::of("POL_RISE", ranges::RISE, "m/s", "Speed of a take-off."),
+        Entry::of("POL_CLEAR", ranges::CLEAR, "m", "How much higher than the cable is long a take-off rises."),
         Entry::of("POL_DESCENT", ranges::DESCENT, "m/s", "Speed of a landing."),
+        Entry::of("POL_ASIDE", ranges::ASIDE, "m", "How far from the load the UAV lands, if the cable lets it."),
         Entry::of(
             "POL_LOAD_LOST",
             ranges::PAYLOAD_LOST,
@@ -146,7 +149,10 @@ impl<T: Real> Parameters<T> {
             lost: if sink < T::zero() { Lost::Cut } else { Lost::Sink(sink) },
             resume: self.is_on(parameter!("POL_RESUME")),
             calm: self.get(parameter!("POL_CALM")),
+            rise: self.get(parameter!("POL_RISE")),
+            clear: self.get(parameter!("POL_CLEAR")),
             descent: self.get(parameter!("POL_DESCENT")),
+            aside: self.get(parameter!("POL_ASIDE")),
             payload_lost: self.get(parameter!("POL_LOAD_LOST")),
         }
     }

@@ -127,6 +127,14 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&mut self.law, supervisor => supervisor.take_over(state, applied))
     }
 
+    /// Wishes for another factor of the path's speed, which changes smoothly: 1 flies the prescribed
+    /// speed, 0 stops, less goes back. The tracking law has none.
+    pub fn set_speed_factor(&mut self, factor: T) {
+        if let Law::Follow(supervisor) = &mut self.law {
+            supervisor.law_mut().set_speed_factor(factor);
+        }
+    }
+
     /// One control step on what is measured now: a state if there is one, or all of [`Measured`].
     /// The tracking law's reference is at `phase`, rad, now.
     #[inline]

@@ -4,12 +4,13 @@ use std::io::{self, Read, Write};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-use controller::{ActuatorLimits, Command, ObserverParams, State};
+use controller::{ActuatorLimits, Command, ObserverParams, Request, State};
 use hil_sim::describe::scenario::{FIGURES, Scenario, builtin};
 use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::pilot::{Answers, Decision, Pilot};
 use hil_sim::fly::run::{self, Flight};
 use hil_sim::hil::{HilError, Options, Pace, Target, Wire};
+use hil_sim::world::Reading;
 
 /// Remembers every number of every command, by its bits.
 pub struct Recorded<A> {
@@ -32,8 +33,8 @@ impl<A: Answers> Answers for Recorded<A> {
         self.inner.take_over(state, applied);
     }
 
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        let decision = self.inner.step(state, t_s)?;
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+        let decision = self.inner.step(read, request, t_s)?;
         let Decision { command, zeta, .. } = decision;
         let [t1, t2, t3] = command.torque.into();
         let [z1, z2, z3, z4] = zeta;

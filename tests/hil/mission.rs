@@ -2,9 +2,9 @@
 //! path, landing, rotors off.
 
 use controller::{Command, Matrix3, Measured, Mode, Request, State, Uav, Vector3};
+use hil_sim::describe::parameters::parameters;
 use hil_sim::describe::scenario::Scenario;
 use hil_sim::fly::pilot::Decision;
-use hil_sim::hil::parameters;
 use hil_sim::world::{Bodies, Seed, World};
 use rig::Rig;
 

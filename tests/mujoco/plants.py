@@ -40,6 +40,13 @@ class Case:
     payload_height: float = 0.05
     feet_below: float = 0.15
     feet_apart: float = 0.2
+    # What is asked of the controller: (from when, s, what). From the ground, rotors off, or from a hover.
+    mission: tuple = ()
+    standing: bool = False
+
+
+# What a state is made of, in its order.
+STATE = ("position", "velocity", "uav_position", "uav_velocity", "attitude", "body_rate")
 
 
 @dataclass
@@ -55,18 +62,15 @@ class State:
     on_ground: tuple = field(default=(False, False))
 
 
-class Simulator:
-    """The plant of the project."""
-
-    def __init__(self, program, folder, case):
-        hook = ", ".join(str(x) for x in case.hook)
-        vector = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
-        cable = f"hook = [{hook}]\n"
-        if case.link == "elastic":
-            cable += f"ea = {float(case.ea)}\ndamping = {float(case.damping)}\n"
-        ground = ""
-        if case.ground:
-            ground = f"""[ground]
+def written(folder, case):
+    """The case as a scenario: what flies, from where, and what is asked of the controller."""
+    vector = lambda v: "[" + ", ".join(repr(float(x)) for x in v) + "]"
+    cable = f"hook = {vector(case.hook)}\n"
+    if case.link == "elastic":
+        cable += f"ea = {float(case.ea)}\ndamping = {float(case.damping)}\n"
+    ground = ""
+    if case.ground:
+        ground = f"""[ground]
 sink = {case.sink}
 damping_ratio = {case.damping_ratio}
 friction = {case.friction}
@@ -74,37 +78,80 @@ payload_height = {case.payload_height}
 feet_below = {case.feet_below}
 feet_apart = {case.feet_apart}
 """
-        scenario = folder / "case.toml"
-        scenario.write_text(
-            f"""duration_s = 1.0
+    requests = "".join(f'[[request]]\nat_s = {float(at_s)}\ndo = "{do}"\n' for at_s, do in case.mission)
+    weight = (case.payload_mass + case.uav_mass) * GRAVITY
+    size = (case.payload_mass / 0.5) ** (1 / 3)
+    poles = [1.0 / (1.0 + case.length / 5.0) ** 0.5 * -k for k in range(1, 7)]
+    scenario = folder / "case.toml"
+    scenario.write_text(
+        f"""duration_s = 1000.0
 vehicle = {{ payload_mass = {case.payload_mass}, uav_mass = {case.uav_mass}, rod_length = {case.length}, inertia = {vector(case.inertia)} }}
-path = {{ kind = "circle", radius = 5.0, p3 = -10.0, speed = 1.0 }}
-controller = {{ law = "follow", rate_hz = {1.0 / case.period} }}
-initial = {{ position = {vector(case.position)}, uav_position = {vector(case.uav_position)}, velocity = {vector(case.velocity)}, uav_velocity = {vector(case.uav_velocity)} }}
+path = {{ kind = "circle", radius = 4.0, p3 = -5.0, speed = 1.0 }}
+initial = {{ position = {vector(case.position)}, uav_position = {vector(case.uav_position)}, velocity = {vector(case.velocity)}, uav_velocity = {vector(case.uav_velocity)}, standing = {str(case.standing).lower()} }}
+[controller]
+law = "follow"
+rate_hz = {1.0 / case.period}
+poles = [{vector(poles)}, {vector(poles)}, {vector(poles[:5])}, [-2.0, -3.0]]
+observer = {{ payload = 4.0, rod = 4.0, torque = 4.0 }}
+limits = {{ thrust = [{0.05 * weight}, {2.2 * weight}], torque = {vector([0.1 * size * weight] * 3)} }}
+parameters = {{ POL_ASIDE = {0.4 * size} }}
 [cable]
-{cable}{ground}"""
-        )
+{cable}{ground}{requests}"""
+    )
+    return scenario
+
+
+class Lines:
+    """A command of the project that answers lines."""
+
+    def __init__(self, program, command, folder, case):
         self.process = subprocess.Popen(
-            [program, "plant", str(scenario)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
+            [program, command, str(written(folder, case))], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
         )
-        self.state = self._read()
 
-    def _read(self):
+    def read(self):
         line = self.process.stdout.readline()
-        answer = json.loads(line) if line else {"error": "the plant has ended"}
+        answer = json.loads(line) if line else {"error": "it has ended"}
         assert "error" not in answer, answer
-        vectors = [np.array(answer[name]) for name in ("position", "velocity", "uav_position", "uav_velocity")]
-        return State(*vectors, np.array(answer["attitude"]), np.array(answer["body_rate"]), tuple(answer["on_ground"]))
+        return answer
 
-    def step(self, thrust, torque):
-        self.process.stdin.write(json.dumps({"thrust": float(thrust), "torque": [float(x) for x in torque]}) + "\n")
+    def ask(self, **line):
+        self.process.stdin.write(json.dumps(line) + "\n")
         self.process.stdin.flush()
-        self.state = self._read()
-        return self.state
+        return self.read()
 
     def close(self):
         self.process.stdin.close()
         assert self.process.wait() == 0
+
+
+class Pilot(Lines):
+    """The controller of the project."""
+
+    def __init__(self, program, folder, case):
+        super().__init__(program, "pilot", folder, case)
+        self.mode = None
+
+    def __call__(self, t, state):
+        vectors = {name: getattr(state, name).tolist() for name in STATE}
+        answer = self.ask(**vectors)
+        self.mode = answer["mode"]
+        return answer["thrust"], answer["torque"]
+
+
+class Simulator(Lines):
+    """The plant of the project."""
+
+    def __init__(self, program, folder, case):
+        super().__init__(program, "plant", folder, case)
+        self.state = self._state(self.read())
+
+    def _state(self, answer):
+        return State(*(np.array(answer[name]) for name in STATE), tuple(answer["on_ground"]))
+
+    def step(self, thrust, torque):
+        self.state = self._state(self.ask(thrust=float(thrust), torque=[float(x) for x in torque]))
+        return self.state
 
 
 # Of a limit or a contact: an impedance that is constant and near one, so that little of its force is left to softness.

@@ -271,6 +271,9 @@ impl Setup {
             ("coast", &mut policy.coast),
             ("calm", &mut policy.calm),
             ("descent", &mut policy.descent),
+            ("rise", &mut policy.rise),
+            ("clear", &mut policy.clear),
+            ("aside", &mut policy.aside),
             ("payload_lost", &mut policy.payload_lost),
         ];
         if let Lost::Sink(share) = &mut policy.lost {

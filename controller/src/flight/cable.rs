@@ -7,7 +7,7 @@ use crate::sampled::pull::Pull;
 
 /// The cable is slack when the load is nearer than this share of its length, or when this share of
 /// the payload's weight has gone from the usual pull, for as long as [`SLACKENING`], s.
-const SHORTENED: f64 = 0.9;
+pub(crate) const SHORTENED: f64 = 0.9;
 const UNWEIGHTED: f64 = 0.5;
 const SLACKENING: f64 = 0.1;
 /// Time, s, over which the usual pull is averaged.

@@ -10,11 +10,10 @@
 use model::{Real, State, Uav, Vehicle, is_within};
 use nalgebra::Vector3;
 
-/// With the load on the ground the UAV waits, s, then goes this far aside, m, at this speed, m/s,
-/// and lands beside it.
-const SETTLED: f64 = 0.5;
-const ASIDE: f64 = 0.6;
-const ASIDE_SPEED: f64 = 0.4;
+/// The UAV lands no further beside the load than this share of the cable.
+const ROOM: f64 = 0.6;
+/// By the rod it goes around the load at no more than this speed, m/s.
+const AROUND: f64 = 0.4;
 /// Nearer to above the load than this, m, aside is forward.
 const ABOVE: f64 = 0.05;
 /// A load stands when its speed has been below this share of the descent's, for so long, s, after it
@@ -79,15 +78,17 @@ impl<T: Real> Landing<T> {
         }
     }
 
-    /// By its own navigation: the velocity, m/s, at which the UAV goes for the coming `period`, s,
-    /// with the cable slack or not.
+    /// By its own navigation: the velocity, m/s, at which the UAV goes for the coming `period`, s.
+    /// Once the cable is slack, it goes aside as fast as it sinks, so that the cable stays slack,
+    /// until it is far enough from the `load`, m, or has gone as far; not where it may be carried by
+    /// the ground. As far aside as wanted is no more than a part of the cable's `length`, m.
     #[inline(never)]
     pub(crate) fn velocity(
         &mut self,
-        state: Option<&State<T>>,
+        load: Option<Vector3<T>>,
         now: &Uav<T>,
-        is_slack: bool,
-        descent: T,
+        (is_slack, is_carried): (bool, bool),
+        (descent, wanted, length): (T, T, T),
         period: T,
     ) -> Vector3<T> {
         let sinking = Vector3::new(T::zero(), T::zero(), descent);
@@ -95,17 +96,14 @@ impl<T: Real> Landing<T> {
             (self.set_down, self.is_by_rod) = (T::zero(), false);
             return sinking;
         }
+        let line = load.map(|load| now.position - load);
         if self.set_down == T::zero() {
-            self.aside = aside(now, state.map(|state| now.position - state.position));
+            self.aside = aside(now, line);
         }
         self.set_down += period;
-        if self.set_down < T::lit(SETTLED) {
-            Vector3::zeros()
-        } else if self.set_down < T::lit(SETTLED + ASIDE / ASIDE_SPEED) {
-            self.aside * T::lit(ASIDE_SPEED)
-        } else {
-            sinking
-        }
+        let gone = line.map_or(self.set_down * descent, |line| line.dot(&self.aside));
+        let is_clear = gone >= wanted.min(length * T::lit(ROOM));
+        if is_clear || is_carried { sinking } else { sinking + self.aside * descent }
     }
 
     /// Whether the load is down.
@@ -169,7 +167,7 @@ impl<T: Real> Landing<T> {
             return Some(Aim { uav, target: uav.position, velocity, pull });
         }
         // Along the meridian to beside the load, and from there straight down.
-        let speed = descent.min(T::lit(ASIDE_SPEED));
+        let speed = descent.min(T::lit(AROUND));
         let way = self.from * length + (self.set_down - T::lit(CATCHING)) * speed;
         let quarter = T::lit(core::f64::consts::FRAC_PI_2);
         let angle = (way / length).min(quarter);

@@ -5,7 +5,7 @@ use model::{Channel, Command, OutOfRange, Real, State, Uav};
 use nalgebra::Vector3;
 
 use crate::law::margins::Margin;
-use crate::ranges::{CALM, COAST, DESCENT, PAYLOAD_LOST, SINK};
+use crate::ranges::{ASIDE, CALM, CLEAR, COAST, DESCENT, PAYLOAD_LOST, RISE, SINK};
 
 /// What the vehicle is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,22 +90,32 @@ pub struct Policy<T> {
     pub resume: bool,
     /// How long the vehicle must have been calm before it rejoins, s.
     pub calm: T,
+    /// Speed of a take-off, m/s.
+    pub rise: T,
+    /// How much higher than the cable is long a take-off rises, m.
+    pub clear: T,
     /// Speed of a landing, m/s.
     pub descent: T,
+    /// How far from the load the UAV lands, m; no further than the cable lets it.
+    pub aside: T,
     /// Share of the payload's mass below which it counts as lost.
     pub payload_lost: T,
 }
 
 impl<T: Real> Default for Policy<T> {
     /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second;
-    /// landing at 0.5 m/s; lost below 30 %.
+    /// take-off at 0.4 m/s to a metre above the cable's length; landing at 0.4 m/s, 0.6 m beside the
+    /// load; lost below 30 %.
     fn default() -> Self {
         Self {
             coast: COAST.default(),
             lost: Lost::Sink(SINK.default()),
             resume: true,
             calm: CALM.default(),
+            rise: RISE.default(),
+            clear: CLEAR.default(),
             descent: DESCENT.default(),
+            aside: ASIDE.default(),
             payload_lost: PAYLOAD_LOST.default(),
         }
     }
@@ -115,7 +125,10 @@ impl<T: Real> Policy<T> {
     pub(crate) fn check(&self) -> Result<(), OutOfRange<T>> {
         COAST.check(self.coast)?;
         CALM.check(self.calm)?;
+        RISE.check(self.rise)?;
+        CLEAR.check(self.clear)?;
         DESCENT.check(self.descent)?;
+        ASIDE.check(self.aside)?;
         PAYLOAD_LOST.check(self.payload_lost)?;
         match self.lost {
             Lost::Cut => Ok(()),

@@ -5,12 +5,12 @@ use nalgebra::Vector3;
 
 use crate::error::Refused;
 use crate::flight::approach::{ApproachLimits, Pace};
-use crate::flight::cable::{Cable, Watching};
+use crate::flight::cable::{Cable, SHORTENED, Watching};
 use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
 use crate::flight::landing::{Aim, Landing};
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 use crate::flight::payload::Payload;
-use crate::law::hold::{Hold, swing};
+use crate::law::hold::{Hold, Swing};
 use crate::law::margins::{Margin, Margins};
 use crate::law::solution::Solution;
 use crate::law::{Ahead, Law};
@@ -21,13 +21,11 @@ use crate::sampled::sampler::Sampler;
 /// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as
 /// the rotors can, goes first.
 const JOINING_THRUST: f64 = 0.75;
-/// A take-off rises at this speed, m/s, until the UAV is this much higher than the cable is long,
-/// m.
-const RISING: f64 = 0.4;
-const CLEAR: f64 = 1.0;
 /// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any
 /// descent.
 const GROUNDED: f64 = 1.5;
+/// From so far above on it may stand already, and does not go aside, m.
+const CARRIED: f64 = 0.3;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
 const CALM_SPEED: f64 = 1.0;
 const CALM_SWING: f64 = 0.3;
@@ -127,7 +125,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             request: Request::Off,
             fault: None,
             is_by_law: false,
-            hold: Hold::from(&Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
+            hold: Hold::from(&vehicle, &Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
             cable: Cable::new(&vehicle, period),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
@@ -409,7 +407,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             // What pulls now is the usual.
             self.cable.learn();
         }
-        self.enter_hold(uav, None);
+        // A landing goes on from where hold has settled.
+        let goes_on = (self.mode, mode) == (Mode::Hold, Mode::Land) && self.hold.has_settled(uav);
+        if !goes_on {
+            self.enter_hold(uav, None);
+        }
         self.mode = mode;
         self.from = uav.position.z;
     }
@@ -417,7 +419,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// Whether a take-off is over.
     #[cold]
     fn has_risen(&self, uav: Option<&Uav<T>>) -> bool {
-        let enough = self.sampler.vehicle().params().rod_length + T::lit(CLEAR);
+        let enough = self.sampler.vehicle().params().rod_length + self.policy.clear;
         uav.is_some_and(|uav| self.from - uav.position.z > enough)
     }
 
@@ -455,7 +457,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     #[inline(never)]
     fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
-        self.hold = Hold::from(uav);
+        self.hold = Hold::from(self.sampler.vehicle(), uav);
         self.sampler.soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
@@ -503,12 +505,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let period = self.sampler.period();
         let (aimed, pull, swing, velocity) = if let Some(&Aim { uav, target, velocity, pull }) = aim {
             self.hold.aim(target, velocity);
-            (uav, pull, Vector3::zeros(), velocity)
+            (uav, pull, Swing::none(), velocity)
         } else {
             let velocity = self.wanted_velocity(state, now);
             let vehicle = self.sampler.vehicle();
-            let taut = state.filter(|_| !self.cable.is_slack());
-            let swing = taut.map_or_else(Vector3::zeros, |state| swing(vehicle, state));
+            let taut = state.filter(|state| self.hangs(&(state.position - now.position)));
+            let swing = taut.map_or_else(Swing::none, |state| Swing::of(vehicle, state));
             (*now, self.cable.pull(vehicle), swing, velocity)
         };
         let vehicle = self.sampler.vehicle();
@@ -533,15 +535,25 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.output(command, warning)
     }
 
+    /// Whether the load hangs from a taut cable, by the `line` to it, m.
+    fn hangs(&self, line: &Vector3<T>) -> bool {
+        let near = self.sampler.vehicle().params().rod_length * T::lit(SHORTENED);
+        !self.cable.is_slack() && !is_within(line, near * near)
+    }
+
     /// The velocity that hold goes for: none, or that of a take-off or landing.
     #[inline(never)]
     fn wanted_velocity(&mut self, state: Option<&State<T>>, now: &Uav<T>) -> Vector3<T> {
         match self.mode {
             Mode::Land => {
                 let (is_slack, period) = (self.cable.is_slack(), self.sampler.period());
-                self.landing.velocity(state, now, is_slack, self.policy.descent, period)
+                let is_carried = self.hold.left_above(now) > T::lit(CARRIED);
+                let load = state.map(|state| state.position);
+                let room = self.sampler.vehicle().params().rod_length;
+                let Policy { descent, aside, .. } = self.policy;
+                self.landing.velocity(load, now, (is_slack, is_carried), (descent, aside, room), period)
             }
-            Mode::TakeOff => Vector3::new(T::zero(), T::zero(), T::lit(-RISING)),
+            Mode::TakeOff => Vector3::new(T::zero(), T::zero(), -self.policy.rise),
             _ => Vector3::zeros(),
         }
     }

@@ -7,24 +7,30 @@
 //!
 //! ```text
 //! T b3 = m_Q (g e3 + f − a)
-//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇     (the last, level and only while the rod is trusted)
+//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇ + k_q L q     (the last two level, while the rod is trusted)
 //! ω̇ = k_R θ − k_ω ω,   T = f·b3,   T b3 within a cone about e3, θ the rotation from b3 to it
 //! ```
 //!
-//! The target r* starts at the UAV and at its level velocity, which it loses within [`BRAKING`]; a
-//! fall is stopped as hard as the rotors can.
+//! Vertically k_p, k_d and k_i are constants. Level they are those of a pole p, twice, that is no
+//! faster than the pendulum ω = √(g/L) which hangs from the UAV, and k_s and k_q are what damps it
+//! by d (14.8): the load at y = r + L q obeys ÿ = −ω² L q, and a gives it the polynomial
+//! (s² + 2 d s + ω²)(s + p)².
+//!
+//! The target r* starts at the UAV and at its level velocity, which it loses over 1/p; a fall is
+//! stopped as hard as the rotors can.
 
-use model::{Command, Real, State, Uav, Vehicle};
+use model::{Command, Real, State, Uav, Vehicle, is_within};
 use nalgebra::Vector3;
 
-/// Time constant with which the target loses the UAV's level velocity, s.
-const BRAKING: f64 = 1.0;
-/// k_p, 1/s², k_d, 1/s, and k_i, 1/s³: poles near −0.5, −0.75 ± 0.2 j.
-const POSITION_GAIN: f64 = 1.0;
-const VELOCITY_GAIN: f64 = 2.0;
-const INTEGRAL_GAIN: f64 = 0.3;
-/// k_s, 1/s: about a fifth of critical damping for rods of metres.
-const SWING_GAIN: f64 = 0.8;
+/// p, 1/s, vertically and at most; level no faster than the pendulum. The target loses the UAV's
+/// velocity over 1/p.
+const POLE: f64 = 1.0;
+/// k_i over p³: with it the poles are near −0.5 p, (−0.75 ± 0.2 j) p.
+const INTEGRAL: f64 = 0.3;
+/// d, 1/s, and as a share of ω.
+const DAMPING: f64 = 0.3;
+/// k_q is all of (14.8) from this length on, m: the body turns too slowly for shorter pendulums.
+const LONG: f64 = 1.0;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
 /// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
@@ -36,7 +42,8 @@ const CONE: f64 = 0.7;
 /// Vertical force: at least this share of the UAV's weight, at most this of all weight.
 const LEAST_LIFT: f64 = 0.4;
 const MOST_LIFT: f64 = 2.0;
-/// A rod that stands on its head, within 8°, may be in balance: an acceleration, m/s², topples it.
+/// A rod that stands on its head, within 8°, may be in balance: as if it hung so far aside, m, the
+/// UAV yields and topples it.
 const BALANCED: f64 = -0.99;
 const TOPPLING: f64 = 0.5;
 /// k_R, 1/s², and k_ω, 1/s: 6 rad/s, critically damped; yaw rate, 1/s.
@@ -44,9 +51,30 @@ const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
 
-/// The hold law's memory: its target and integral.
+/// What hangs from the UAV: L q and L q̇, m and m/s; zeros where the rod is not trusted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swing<T> {
+    offset: Vector3<T>,
+    rate: Vector3<T>,
+}
+
+/// k_p, k_d, k_i and p, of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Gains<T> {
+    position: T,
+    velocity: T,
+    integral: T,
+    pole: T,
+}
+
+/// The hold law's memory: its target and integral, and the gains for the vehicle at hand.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hold<T> {
+    vertical: Gains<T>,
+    level: Gains<T>,
+    /// k_s and k_q.
+    swing_rate: T,
+    swing_offset: T,
     target: Vector3<T>,
     /// What the target's rounding has left out: its steps may be smaller than its last digit.
     remainder: Vector3<T>,
@@ -55,9 +83,26 @@ pub(crate) struct Hold<T> {
 }
 
 impl<T: Real> Hold<T> {
-    /// From where the UAV is and as fast as it is.
-    pub(crate) fn from(uav: &Uav<T>) -> Self {
+    /// For `vehicle`, from where the UAV is and as fast as it is.
+    #[inline(never)]
+    pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>) -> Self {
+        let params = vehicle.params();
+        let per_length = params.gravity / params.rod_length;
+        let omega = per_length.sqrt();
+        let pole = T::lit(POLE).min(omega);
+        let damping = T::lit(DAMPING).min(omega * T::lit(DAMPING));
+        let gains = |pole: T, yielding: T| Gains {
+            position: pole * pole,
+            velocity: pole * T::lit(2.0) + yielding,
+            integral: pole * pole * pole * T::lit(INTEGRAL),
+            pole,
+        };
+        let yielding = damping * T::lit(2.0) * (pole * pole / per_length);
         Self {
+            vertical: gains(T::lit(POLE), T::zero()),
+            level: gains(pole, yielding),
+            swing_rate: damping * T::lit(2.0) - yielding,
+            swing_offset: damping * pole * T::lit(4.0) * (params.rod_length / T::lit(LONG)).min(T::one()),
             target: uav.position,
             remainder: Vector3::zeros(),
             velocity: level(&uav.velocity),
@@ -70,6 +115,11 @@ impl<T: Real> Hold<T> {
         (self.target, self.velocity, self.remainder) = (target, velocity, Vector3::zeros());
     }
 
+    /// Whether the UAV is where it should be, to within what counts.
+    pub(crate) fn has_settled(&self, uav: &Uav<T>) -> bool {
+        is_within(&(uav.position - self.target), T::lit(REACH * REACH))
+    }
+
     /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
     /// that the ground carries it.
     pub(crate) fn left_above(&self, uav: &Uav<T>) -> T {
@@ -77,13 +127,13 @@ impl<T: Real> Hold<T> {
     }
 
     /// The command at `uav` under a `pull` (m/s², per UAV mass), and the target one `period` (s)
-    /// on, on its way to `velocity` (N, m/s). `swing` is L q̇ of a trusted rod.
+    /// on, on its way to `velocity` (N, m/s).
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
         uav: &Uav<T>,
         pull: &Vector3<T>,
-        swing: &Vector3<T>,
+        swing: &Swing<T>,
         velocity: &Vector3<T>,
         period: T,
     ) -> Command<T> {
@@ -91,14 +141,18 @@ impl<T: Real> Hold<T> {
         let Uav { position, velocity: uav_velocity, attitude, body_rate: omega } = uav;
         let error = limited(&(position - self.target), T::lit(REACH));
         let rate_error = uav_velocity - self.velocity;
-        let integral = self.integral + error * (T::lit(INTEGRAL_GAIN) * period);
+        let along = |v: &Vector3<T>, gain: fn(&Gains<T>) -> T| {
+            let (level, vertical) = (gain(&self.level), gain(&self.vertical));
+            Vector3::new(v.x * level, v.y * level, v.z * vertical)
+        };
+        let integral = self.integral + along(&error, |gains| gains.integral) * period;
         let is_settling = rate_error.dot(&rate_error) < T::lit(SETTLING * SETTLING);
         if is_settling && integral.dot(&integral) < T::lit(INTEGRAL_BOUND * INTEGRAL_BOUND) {
             self.integral = integral;
         }
-        let acceleration = level(swing) * T::lit(SWING_GAIN)
-            - error * T::lit(POSITION_GAIN)
-            - rate_error * T::lit(VELOCITY_GAIN)
+        let acceleration = level(&swing.rate) * self.swing_rate + level(&swing.offset) * self.swing_offset
+            - along(&error, |gains| gains.position)
+            - along(&rate_error, |gains| gains.velocity)
             - self.integral;
         self.advance(velocity, period);
 
@@ -142,18 +196,27 @@ impl<T: Real> Hold<T> {
         let target = self.target + step;
         self.remainder = step - (target - self.target);
         self.target = target;
-        self.velocity += (wanted - self.velocity) * (period / T::lit(BRAKING));
+        let missing = wanted - self.velocity;
+        let (level, vertical) = (self.level.pole * period, self.vertical.pole * period);
+        self.velocity += Vector3::new(missing.x * level, missing.y * level, missing.z * vertical);
     }
 }
 
-/// What the UAV yields to: L q̇ of the rod, or, while that may stand on its head in balance, some
-/// motion to topple it.
-pub(crate) fn swing<T: Real>(vehicle: &Vehicle<T>, state: &State<T>) -> Vector3<T> {
-    let mut swing = state.rod_rate * vehicle.params().rod_length;
-    if state.rod.z < T::lit(BALANCED) {
-        swing.x += T::lit(TOPPLING / SWING_GAIN);
+impl<T: Real> Swing<T> {
+    /// Nothing that is trusted.
+    pub(crate) fn none() -> Self {
+        Self { offset: Vector3::zeros(), rate: Vector3::zeros() }
     }
-    swing
+
+    /// Of the rod of `state`, where it hangs.
+    pub(crate) fn of(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
+        let length = vehicle.params().rod_length;
+        let mut offset = state.rod * (length * state.rod.z.max(T::zero()));
+        if state.rod.z < T::lit(BALANCED) {
+            offset.x = T::lit(TOPPLING);
+        }
+        Self { offset, rate: state.rod_rate * length }
+    }
 }
 
 /// The level part of `v`.

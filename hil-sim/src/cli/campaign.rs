@@ -6,7 +6,7 @@ use hil_sim::report::log;
 use hil_sim::study::campaign::{self, Campaign, Identity, Replay, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -14,7 +14,8 @@ use super::{Common, Ended, Logs, many, many::Many};
 
 /// Each example can be pasted into a shell.
 pub const EXAMPLES: &str = "Examples:
-  hil-sim campaign                               the campaign that comes with the program
+  hil-sim campaign                               following a circle against everything at once
+  hil-sim campaign ground-to-ground              take-off with a slack cable, a path, landing
   hil-sim campaign my.toml --runs 1000 --seed 7 --jobs 2 --out results
   hil-sim campaign my.toml --out results         again: goes on where it was interrupted
   hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
@@ -27,13 +28,10 @@ pub const EXAMPLES: &str = "Examples:
 pub const MERGE_EXAMPLES: &str = "Examples:
   hil-sim merge part1 part2 part3 part4 --out whole";
 
-/// The campaign that comes with the program.
-const BUILTIN: &str = include_str!("../../scenarios/campaign.toml");
-
 /// What to fly.
 #[derive(Args)]
 pub struct CampaignArguments {
-    /// Campaign file; left out: the one that comes with the program.
+    /// Campaign file, or the name of a built-in one: campaign (if left out), ground-to-ground.
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Flights; as the file says if left out.
@@ -81,13 +79,12 @@ fn shard(text: &str) -> Result<Shard, String> {
 
 /// Flies, prints, reports.
 pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
-    let (name, text) = match &arguments.file {
-        Some(file) => {
-            let name = file.display().to_string();
-            let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
-            (name, text)
-        }
-        None => ("campaign.toml".to_owned(), BUILTIN.to_owned()),
+    let file = arguments.file.as_deref().unwrap_or(Path::new("campaign"));
+    let name = file.display().to_string();
+    let text = match (std::fs::read_to_string(file), campaign::builtin(&name)) {
+        (Ok(text), _) => text,
+        (Err(error), Some(text)) if error.kind() == io::ErrorKind::NotFound => text.to_owned(),
+        (Err(error), _) => return Err(format!("{name}: {error}").into()),
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     let runs = arguments.runs.unwrap_or(campaign.runs);

@@ -229,6 +229,19 @@ enum Command {
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },
+    /// Step a scenario's controller from another program's plant: JSON lines.
+    ///
+    /// Each line of standard input is a state as `plant` answers it: "position", "velocity",
+    /// "uav_position", "uav_velocity", "attitude" and "body_rate", and where it is measured
+    /// "specific_force" in body axes; what else stands there is not looked at. The answer has "thrust",
+    /// "torque", "mode" and "fault". A control period passes with every line, and the scenario's
+    /// requests hold from their times on.
+    #[command(after_help = plant::PILOT_EXAMPLES)]
+    Pilot {
+        /// Scenario file, or the name of a built-in scenario.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
     /// Be a target: the flight program's logic on this computer, for `hil` or any MAVLink client to
     /// connect to.
     #[command(after_help = hil::TARGET_EXAMPLES)]
@@ -266,7 +279,8 @@ pub fn run() -> Ended {
         Some(Command::Route(arguments)) => route::route(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
         Some(Command::View { file }) => view::view(&file),
-        Some(Command::Plant { file }) => plant::step_lines(&file),
+        Some(Command::Plant { file }) => plant::plant(&file),
+        Some(Command::Pilot { file }) => plant::pilot(&file),
         Some(Command::Target { listen }) => hil::target(&common, &listen),
     }
 }

@@ -49,12 +49,17 @@ pub fn parse_reference<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<
 }
 
 impl ReferenceSpec {
-    /// The reference about time `t_s`. The phase is reduced to one turn in f64 first, as a counter
+    /// Where on its circle the reference is at `t_s`, rad, reduced to one turn in f64, as a counter
     /// on the target would.
     #[must_use]
+    pub fn phase<T: Real>(&self, t_s: f64) -> T {
+        T::lit((self.rate * t_s) % TAU)
+    }
+
+    /// The reference about time `t_s`.
+    #[must_use]
     pub fn at<T: Real>(&self, t_s: f64) -> Reference<T> {
-        let phase = (self.rate * t_s) % TAU;
-        Reference::circle(T::lit(self.radius), T::lit(self.p3), T::lit(self.rate), T::lit(phase))
+        Reference::circle(T::lit(self.radius), T::lit(self.p3), T::lit(self.rate), self.phase(t_s))
     }
 
     /// Distance of a point of N from the circle, m.

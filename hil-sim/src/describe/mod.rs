@@ -5,6 +5,7 @@ pub mod formula;
 pub mod input;
 pub mod keys;
 pub mod mission;
+pub mod parameters;
 pub mod path;
 pub mod reference;
 pub mod scenario;

@@ -3,12 +3,13 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use controller::{Command, State, Vector3};
+use controller::{Command, Request, State, Vector3};
 
 use super::pilot::{Answers, Decision};
 use super::sight::Sight;
-use crate::describe::scenario::Scenario;
-use crate::world::Seed;
+use super::touchdown::{Touchdown, Watch};
+use crate::describe::scenario::{Mission, Scenario};
+use crate::world::{Body, Seed};
 
 /// A flight this far from its path is lost and ends, m; one that starts further off, at twice its
 /// distance then.
@@ -51,7 +52,8 @@ pub struct Plan<'a> {
     pub seed: Seed,
     /// How the pilot begins.
     pub entry: Entry,
-    /// Where a body that comes to it ends the flight, m; negative is above the origin.
+    /// Where a body that comes to it ends the flight, m; negative is above the origin. A scenario's
+    /// own ground carries both.
     pub ground_p3: Option<f64>,
     /// Control periods from one d_C to the next: a nearest point can cost more than a step of the
     /// law.
@@ -65,9 +67,11 @@ pub struct Plan<'a> {
 pub enum End {
     /// At its duration.
     Complete,
+    /// After a landing that was asked for, rotors off and both bodies at rest, at this time, s.
+    Landed(f64),
     /// At a user's wish.
     Interrupted,
-    /// On the ground, at this time, s.
+    /// Into the ground, at this time, s.
     Crashed(f64),
     /// [`LOST_M`] from its path, at this time, s.
     Lost(f64),
@@ -78,11 +82,11 @@ pub enum End {
 }
 
 impl End {
-    /// In a few words, of a flight that did not reach its duration.
+    /// In a few words, of a flight that ended before its time.
     #[must_use]
     pub fn failure(self) -> Option<String> {
         match self {
-            Self::Complete => None,
+            Self::Complete | Self::Landed(_) => None,
             Self::Interrupted => Some("interrupted".to_owned()),
             Self::Crashed(at_s) => Some(format!("on the ground at {at_s:.3} s")),
             Self::Lost(at_s) | Self::NotFinite(at_s) => Some(format!("lost at {at_s:.3} s")),
@@ -100,6 +104,12 @@ pub struct Moment<'a> {
     pub t_s: f64,
     /// The state as it is, not as it is read.
     pub state: &'a State<f64>,
+    /// Payload and UAV as they move.
+    pub body: &'a Body,
+    /// How they came to the ground so far.
+    pub touchdown: &'a Touchdown,
+    /// What was asked for.
+    pub request: Request,
     /// d_C, m, where it was taken in this period.
     pub distance_m: Option<f64>,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
@@ -114,7 +124,7 @@ pub struct Moment<'a> {
 const CHECK_PERIODS: u64 = 256;
 
 /// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the
-/// controller takes for one.
+/// controller takes for one; a vehicle that stands on the ground begins with its rotors off.
 pub fn fly(
     scenario: &Scenario,
     plan: &Plan<'_>,
@@ -124,18 +134,21 @@ pub fn fly(
     let controller = &scenario.controller;
     let told = &controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
-    let mut world = scenario.begin(&plan.start, hover, plan.seed);
+    let begun = if scenario.standing { Command::zero() } else { hover };
+    let mut world = scenario.begin(&plan.start, begun, plan.seed);
     let mut sight = scenario.estimator.as_ref().map(|estimator| {
         // Every range of a scenario lies within the filters' own.
-        Sight::new(estimator, scenario, &plan.start, hover.thrust, plan.seed).expect("a scenario's numbers")
+        Sight::new(estimator, scenario, &plan.start, begun.thrust, plan.seed).expect("a scenario's numbers")
     });
-    let mut applied = hover;
+    let mut applied = begun;
     let period = 1.0 / controller.rate_hz;
     let steps = scenario.steps();
     let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
     let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
     let lost_m = LOST_M.max(2.0 * distance_of(&plan.start));
 
+    let mut mission = Mission::of(scenario);
+    let mut ground = Watch::new(scenario.ground, period);
     let mut zeta = controller.zeta;
     // What goes on where the pilot misses a sample; none before it begins.
     let mut last: Option<Decision> = None;
@@ -165,11 +178,28 @@ pub fn fly(
             break;
         }
         let on_ground = |p3: f64| plan.ground_p3.is_some_and(|ground| p3 >= ground);
-        if on_ground(state.position.z) || on_ground(world.body().uav_position().z) {
+        let has_crashed = ground.has_crashed(world.body());
+        if has_crashed || on_ground(state.position.z) || on_ground(world.body().uav_position().z) {
             end = End::Crashed(t_s);
             break;
         }
-        let seen = Moment { step, t_s, state: &state, distance_m, decision: None, sight: None, is_over: false };
+        let (request, factor) = mission.at(step);
+        if let Some(factor) = factor {
+            pilot.set_speed_factor(factor);
+        }
+        let (body, touchdown) = (*world.body(), ground.touchdown);
+        let seen = Moment {
+            step,
+            t_s,
+            state: &state,
+            body: &body,
+            touchdown: &touchdown,
+            request,
+            distance_m,
+            decision: None,
+            sight: None,
+            is_over: false,
+        };
         if held.as_ref().is_some_and(|held| held.contains(&step)) {
             watch(&seen);
             world.wait();
@@ -181,20 +211,24 @@ pub fn fly(
             None => world.read(&state),
         };
         if last.is_none() || !world.misses() {
-            if last.is_none() {
+            if last.is_none() && !scenario.standing {
                 match plan.entry {
-                    Entry::Stated => pilot.start(&read, zeta),
-                    Entry::Hover => pilot.take_over(&read, &hover),
+                    Entry::Stated => pilot.start(&read.state, zeta),
+                    Entry::Hover => pilot.take_over(&read.state, &hover),
                 }
             }
             // A controller counts its periods.
-            last = pilot.step(&read, step as f64 * period);
+            last = pilot.step(&read, request, step as f64 * period);
         }
         let Some(decision) = &last else {
             end = End::Unanswered(t_s);
             break;
         };
         watch(&Moment { decision: Some(decision), sight: sight.as_ref(), ..seen });
+        if ground.has_landed(world.body(), request, decision.mode) && mission.is_over() {
+            end = End::Landed(t_s);
+            break;
+        }
         applied = decision.command;
         world.advance(&applied);
         step += 1;
@@ -214,6 +248,9 @@ pub fn fly(
             step,
             t_s: world.time_s(),
             state: &state,
+            body: world.body(),
+            touchdown: &ground.touchdown,
+            request: mission.at(step).0,
             distance_m,
             decision: None,
             sight: None,

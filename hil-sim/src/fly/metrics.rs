@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::describe::scenario::{Law, Scenario};
 use crate::fly::flight::Moment;
 use crate::fly::stops::Stops;
+use crate::fly::touchdown::Touchdown;
 use controller::Vector3;
 
 /// d_C below which a flight counts as settled, m.
@@ -64,6 +65,15 @@ pub struct Results {
     /// Largest magnitude of the p3 error in the steady time, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steady_p3_error_max_m: Option<f64>,
+    /// Fastest touch of the UAV on the ground, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uav_touchdown_m_s: Option<f64>,
+    /// Fastest touch of the payload on the ground, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_touchdown_m_s: Option<f64>,
+    /// Level distance of the payload from where it was when a landing was asked for, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub load_place_m: Option<f64>,
 }
 
 /// Mean and largest magnitude.
@@ -113,6 +123,7 @@ pub struct Metrics<'a> {
     radius: Spread,
     p3: Spread,
     speed: Spread,
+    touchdown: Touchdown,
 }
 
 impl<'a> Metrics<'a> {
@@ -141,11 +152,13 @@ impl<'a> Metrics<'a> {
             radius: Spread::default(),
             p3: Spread::default(),
             speed: Spread::default(),
+            touchdown: Touchdown::default(),
         }
     }
 
     /// Adds what is seen at `t` (s), d_C (m) from the curve.
     pub fn push(&mut self, t: f64, distance: f64, moment: &Moment<'_>) {
+        self.touchdown = *moment.touchdown;
         // Comparisons that a NaN fails: a flight that ends as none has not settled.
         if distance < SETTLED_M {
             self.first_below_s.get_or_insert(t);
@@ -210,6 +223,9 @@ impl<'a> Metrics<'a> {
             steady_speed_error_m_s: self.speed.mean(),
             steady_radius_error_max_m: self.radius.max(),
             steady_p3_error_max_m: self.p3.max(),
+            uav_touchdown_m_s: self.touchdown.uav_m_s,
+            load_touchdown_m_s: self.touchdown.load_m_s,
+            load_place_m: self.touchdown.load_place_m,
         }
     }
 }

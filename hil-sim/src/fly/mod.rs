@@ -15,4 +15,5 @@ pub mod run;
 pub mod sample;
 pub mod sight;
 pub mod stops;
+pub mod touchdown;
 pub mod twin;

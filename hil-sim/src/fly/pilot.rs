@@ -1,15 +1,17 @@
-//! Either law of the controller behind one face, in either scalar, with its numbers as f64 for
-//! recording.
+//! The controller as it flies everywhere, behind the face of whatever answers readings, in either
+//! scalar, with its numbers as f64 for recording.
 
-use controller::{
-    Command, Disturbance, Fault, Follower, Margins, Mode, Real, SetupError, State, Tracker, Vector3, Vehicle,
-};
+use controller::{Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav};
+use rig::{Parameters, Rig};
 
-use crate::describe::course::{FlownPath, ReferenceSpec};
+use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec};
+use crate::describe::input::Invalid;
+use crate::describe::parameters::without_path;
 use crate::describe::scenario::{ControllerSpec, Law};
+use crate::world::Reading;
 
-/// Whatever answers states with commands: a law in this program, or a target at the other end of a
-/// link.
+/// Whatever answers readings with commands: a controller in this program, or a target at the other
+/// end of a link.
 pub trait Answers {
     /// Starts from a stated ζ, with integrals at zero.
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]);
@@ -17,17 +19,19 @@ pub trait Answers {
     /// Takes over from whatever applied `applied` until now, without a bump in thrust.
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>);
 
-    /// The command for the hold that begins at `t_s`, from the state sampled then; `None` if there
-    /// will be no more.
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision>;
+    /// Wishes for another factor of the path's speed, where that can be had.
+    fn set_speed_factor(&mut self, _factor: f64) {}
+
+    /// The command for the hold that begins at `t_s`, from what is read then and what is asked for;
+    /// `None` if there will be no more.
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision>;
 }
 
 /// A controller at work in the scalar `T`.
-pub enum Pilot<T> {
-    /// Path following.
-    Follow(Box<Follower<T, FlownPath<T>>>),
-    /// Trajectory tracking, with its reference.
-    Track(Box<Tracker<T>>, ReferenceSpec),
+pub struct Pilot<T: Real> {
+    rig: Box<Rig<T, FlownPath<T>>>,
+    /// Of the tracking law.
+    reference: Option<ReferenceSpec>,
 }
 
 /// One answer of a pilot.
@@ -37,13 +41,13 @@ pub struct Decision {
     pub command: Command<f64>,
     /// ζ at the sample, m/s²⁺ᵏ.
     pub zeta: [f64; 4],
-    /// What the vehicle is doing; [`Mode::Follow`] of a law alone.
+    /// What the vehicle is doing.
     pub mode: Mode,
     /// Why it is not doing what was asked for; none of a target's, whose link counts them.
     pub fault: Option<Fault>,
     /// What the observers hold; of a target at the other end of a link it does not come.
     pub disturbance: Option<Disturbance<f64>>,
-    /// The law's own numbers, where it was asked; of a target they come with the samples that are
+    /// The law's own numbers, where it flew; of a target they come with the samples that are
     /// logged.
     pub telemetry: Option<Telemetry>,
 }
@@ -76,113 +80,90 @@ pub struct Observed {
     pub payload_mass: f64,
 }
 
-impl Observed {
-    /// Of what was `found` for this vehicle, rod and λ.
-    pub(crate) fn new<T: Real>(found: &Disturbance<T>, vehicle: &Vehicle<T>, rod: &Vector3<T>, lambda: T) -> Self {
-        let numbers = |v: Vector3<T>| v.map(T::to_f64).into();
-        Self {
-            payload_force: numbers(found.payload_force(vehicle, rod)),
-            uav_force: numbers(found.uav_force(vehicle, rod)),
-            torque: numbers(found.torque),
-            payload_mass: found.implied_payload_mass(vehicle, rod, lambda).to_f64(),
-        }
-    }
-}
-
 impl<T: Real> Pilot<T> {
-    /// The controller that `spec` describes, at hover.
+    /// The controller that `spec` describes, rotors off.
     ///
     /// # Errors
-    /// [`SetupError`] if rounding to `T` takes a parameter out of range or makes the gains
-    /// unstable.
-    pub fn new(spec: &ControllerSpec) -> Result<Self, SetupError<T>> {
-        let vehicle = Vehicle::new(spec.vehicle.cast())?;
-        let sampling = spec.sampling().cast();
-        let (observer, limits) = (spec.observer.cast(), spec.limits.cast());
-        Ok(match &spec.law {
-            Law::Follow { path, gains } => {
-                let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?;
-                Self::Follow(Box::new(follower.with_observer(observer)?.with_limits(limits)?))
-            }
-            Law::Track { reference, gains } => {
-                let tracker = Tracker::new(vehicle, gains.cast(), sampling)?;
-                Self::Track(Box::new(tracker.with_observer(observer)?.with_limits(limits)?), *reference)
-            }
-        })
+    /// [`Invalid`] for a number that a parameter does not take, that rounding to `T` takes out of
+    /// range, or gains that it makes unstable.
+    pub fn new(spec: &ControllerSpec) -> Result<Self, Invalid> {
+        let parameters = without_path(spec).map_err(|unsupported| Invalid::new("controller", unsupported))?;
+        Self::of(spec, &parameters)
     }
 
-    /// The command for the hold that begins at `t_s`, from the state sampled then.
+    /// The same with `parameters` in place of those that `spec` has by itself.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of(spec: &ControllerSpec, parameters: &Parameters<f64>) -> Result<Self, Invalid> {
+        let refused = |error| Invalid::out_of_range("controller", error);
+        let path: FlownPath<T> = match &spec.law {
+            Law::Follow { path, .. } => path.build().map_err(refused)?,
+            // Never flown: the tables' own.
+            Law::Track { .. } => PathSpec::default().build().map_err(refused)?,
+        };
+        let rig = Rig::on(path, &parameters.cast()).map_err(|error| Invalid::new("controller", error))?;
+        let reference = match spec.law {
+            Law::Follow { .. } => None,
+            Law::Track { reference, .. } => Some(reference),
+        };
+        Ok(Self { rig: Box::new(rig), reference })
+    }
+
+    /// The command for the hold that begins at `t_s`, from what is read then.
     #[inline]
-    pub fn decide(&mut self, state: &State<f64>, t_s: f64) -> Decision {
-        let state = state.cast();
-        let (zeta, integral) = match self {
-            Self::Follow(follower) => (*follower.zeta(), *follower.law().integral()),
-            Self::Track(tracker, _) => (*tracker.zeta(), [T::zero(); 3]),
-        };
-        let (command, xi, nu, margins, found, vehicle) = match self {
-            Self::Follow(follower) => {
-                let solution = follower.step(&state);
-                let xi = padded([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]);
-                (solution.command, xi, solution.nu, solution.margins, follower.disturbance(), follower.vehicle())
+    pub fn decide(&mut self, read: &Reading, request: Request, t_s: f64) -> Decision {
+        let state: State<T> = read.state.cast();
+        let uav = read.uav.as_ref().map(Uav::cast);
+        let specific_force = read.specific_force.map(|force| force.map(T::lit));
+        let measured = Measured { state: Some(&state), uav: uav.as_ref(), specific_force };
+        let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
+        let (zeta, integral) = (*self.rig.zeta(), self.rig.integral());
+        let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);
+        let telemetry = self.rig.numbers().map(|numbers| {
+            let found = self.rig.telemetry(&state);
+            let rig::LawNumbers { xi, nu, margins, .. } = numbers;
+            Telemetry {
+                integral: integral.map(T::cast),
+                xi: xi.map(T::cast),
+                nu: nu.map(T::cast),
+                margins: margins.cast(),
+                observed: Observed {
+                    payload_force: found.payload_force.map(T::cast),
+                    uav_force: found.uav_force.map(T::cast),
+                    torque: found.torque.map(T::cast),
+                    payload_mass: found.payload_mass.cast(),
+                },
             }
-            Self::Track(tracker, reference) => {
-                let solution = tracker.track(&state, &reference.at(t_s));
-                let [p1, p2, p3] = &solution.xi.position;
-                let xi = padded([p1, p2, p3, &solution.xi.yaw]);
-                (solution.command, xi, solution.nu, solution.margins, tracker.disturbance(), tracker.vehicle())
-            }
-        };
+        });
         Decision {
             command: command.cast(),
             zeta: zeta.map(T::cast),
-            mode: Mode::Follow,
-            fault: None,
-            disturbance: Some(found.cast()),
-            telemetry: Some(Telemetry {
-                integral: integral.map(T::cast),
-                xi,
-                nu: nu.map(T::cast),
-                margins: margins.cast(),
-                observed: Observed::new(found, vehicle, &state.rod, margins.lambda),
-            }),
+            mode,
+            fault,
+            disturbance: Some(self.rig.disturbance().cast()),
+            telemetry,
         }
     }
-}
-
-/// ξ's parts one after the other.
-pub(crate) fn padded<T: Real>(parts: [&[T]; 4]) -> [f64; 20] {
-    let mut xi = [0.0; 20];
-    let mut rest = &mut xi[..];
-    for part in parts {
-        let (slots, left) = rest.split_at_mut(part.len());
-        for (slot, &value) in slots.iter_mut().zip(part) {
-            *slot = value.cast();
-        }
-        rest = left;
-    }
-    xi
 }
 
 impl<T: Real> Answers for Pilot<T> {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        let (state, zeta) = (state.cast(), zeta.map(T::lit));
         // A refused state leaves the law as it was, which the flight then shows.
-        let _ = match self {
-            Self::Follow(follower) => follower.start(&state, zeta),
-            Self::Track(tracker, _) => tracker.start(&state, zeta),
-        };
+        let _ = self.rig.start(&state.cast(), zeta.map(T::lit));
     }
 
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
         // A refused state leaves the law as it was, which the flight then shows.
-        let _ = match self {
-            Self::Follow(follower) => follower.take_over(&state.cast(), applied.cast()),
-            Self::Track(tracker, _) => tracker.take_over(&state.cast(), applied.cast()),
-        };
+        let _ = self.rig.take_over(&state.cast(), applied.cast());
+    }
+
+    fn set_speed_factor(&mut self, factor: f64) {
+        self.rig.set_speed_factor(T::lit(factor));
     }
 
     #[inline]
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        Some(self.decide(state, t_s))
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+        Some(self.decide(read, request, t_s))
     }
 }

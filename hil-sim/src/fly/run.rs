@@ -1,6 +1,6 @@
 //! A flight with everything that figures, tables and logs ask of it.
 
-use controller::{SetupError, State, Trapped};
+use controller::{State, Trapped};
 use cpu_time::ThreadTime;
 
 use super::deviation::Deviation;
@@ -10,8 +10,9 @@ use super::pilot::{Answers, Pilot};
 use super::sample::Sample;
 use super::sight::Sight;
 use super::twin::Twinned;
+use crate::describe::input::Invalid;
 use crate::describe::scenario::Scenario;
-use crate::world::Seed;
+use crate::world::{Bodies, Seed};
 
 /// The scalar that the pilot computes in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,24 +46,13 @@ pub struct Flight {
 /// Flies `scenario`; with `twin`, an f64 twin of the pilot answers beside it.
 ///
 /// # Errors
-/// [`SetupError`] if the scenario's numbers do not survive the pilot's scalar.
-pub fn fly(
-    scenario: &Scenario,
-    arithmetic: Arithmetic,
-    twin: bool,
-    control: Control<'_>,
-) -> Result<Flight, SetupError<f64>> {
+/// [`Invalid`] if the scenario's numbers do not survive the pilot's scalar.
+pub fn fly(scenario: &Scenario, arithmetic: Arithmetic, twin: bool, control: Control<'_>) -> Result<Flight, Invalid> {
     let spec = &scenario.controller;
     match arithmetic {
-        Arithmetic::F32 => {
-            let mut pilot = Pilot::<f32>::new(spec).map_err(|error| error.cast())?;
-            fly_on(scenario, &mut pilot, twin, control)
-        }
+        Arithmetic::F32 => fly_on(scenario, &mut Pilot::<f32>::new(spec)?, twin, control),
         Arithmetic::F64 => fly_on(scenario, &mut Pilot::<f64>::new(spec)?, twin, control),
-        Arithmetic::Trapped => {
-            let mut pilot = Pilot::<Trapped>::new(spec).map_err(|error| error.cast())?;
-            fly_on(scenario, &mut pilot, twin, control)
-        }
+        Arithmetic::Trapped => fly_on(scenario, &mut Pilot::<Trapped>::new(spec)?, twin, control),
     }
 }
 
@@ -70,20 +60,20 @@ pub fn fly(
 ///
 /// # Errors
 /// As [`fly`].
-pub fn fly_simply(scenario: &Scenario, arithmetic: Arithmetic) -> Result<Flight, SetupError<f64>> {
+pub fn fly_simply(scenario: &Scenario, arithmetic: Arithmetic) -> Result<Flight, Invalid> {
     fly(scenario, arithmetic, false, Control::alone())
 }
 
 /// Flies `scenario` on any pilot, as a target at the other end of a link.
 ///
 /// # Errors
-/// [`SetupError`] if the twin cannot be made.
+/// [`Invalid`] if the twin cannot be made.
 pub fn fly_on(
     scenario: &Scenario,
     pilot: &mut impl Answers,
     twin: bool,
     control: Control<'_>,
-) -> Result<Flight, SetupError<f64>> {
+) -> Result<Flight, Invalid> {
     let twin = if twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
     let begun = ThreadTime::now();
     let mut pilot = Twinned::new(pilot, twin, &scenario.controller);
@@ -107,12 +97,14 @@ pub fn fly_on(
         if moment.step % log_every == 0 || moment.is_over {
             // At the start as they were given: there and back they would be rounded.
             let x = if moment.step == 0 { scenario.initial } else { moment.state.to_paper() };
-            let decision = moment.decision.copied();
+            let Bodies { uav_position, uav_velocity, .. } = moment.body.bodies();
             log.push(Sample {
                 t_s: flown_s,
                 x,
+                uav_position,
+                uav_velocity,
                 distance_m,
-                decision,
+                decision: moment.decision.copied(),
                 specific_force: moment.sight.map(Sight::specific_force),
             });
         }

@@ -11,6 +11,10 @@ pub struct Sample {
     pub t_s: f64,
     /// The paper's 16 coordinates.
     pub x: [f64; 16],
+    /// Of the UAV in N, m.
+    pub uav_position: Vector3<f64>,
+    /// Of the UAV in N, m/s.
+    pub uav_velocity: Vector3<f64>,
     /// d_C, m.
     pub distance_m: f64,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.

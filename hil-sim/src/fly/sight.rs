@@ -1,7 +1,7 @@
 //! What a law sees through an estimator: instruments, navigation, payload filter, all in the
 //! flight's own arithmetic.
 
-use controller::{Command, Matrix3, State, Vector3};
+use controller::{Command, Matrix3, State, Uav, Vector3};
 use estimator::{
     Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload, PayloadParams,
 };
@@ -11,7 +11,7 @@ use crate::describe::scenario::{EstimatorSpec, Scenario};
 use crate::world::random::Purpose;
 use crate::world::sensors::gnss::FixReading;
 use crate::world::sensors::mocap::PoseReading;
-use crate::world::{InstrumentModel, Seed, World};
+use crate::world::{Body, InstrumentModel, Reading, Seed, World};
 
 /// Motion capture's own word on its accuracy: a little more than its noise, since its frames are
 /// not all independent.
@@ -120,8 +120,9 @@ impl Sight {
         })
     }
 
-    /// What is seen of `world` at the end of a period under `command`.
-    pub fn see(&mut self, world: &World, command: &Command<f64>) -> State<f64> {
+    /// What is seen of `world` at the end of a period under `command`: the payload filter's state,
+    /// and the UAV by navigation where the cable may be slack.
+    pub fn see(&mut self, world: &World, command: &Command<f64>) -> Reading {
         let readings = self.instruments.read(world);
         self.specific_force = readings.imu.specific_force;
         let modelled = self.rotors.pass(command.thrust);
@@ -144,7 +145,14 @@ impl Sight {
             self.capture(pose);
         }
         self.estimate = Some(estimate);
-        estimate.state.cast()
+        let apart = matches!(world.body(), Body::Cable(_));
+        let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
+        let uav = Uav { position, velocity, attitude, body_rate };
+        Reading {
+            state: estimate.state.cast(),
+            uav: apart.then(|| uav.cast()),
+            specific_force: apart.then(|| specific_force.map(f64::from)),
+        }
     }
 
     fn capture(&mut self, pose: &PoseReading) {

@@ -4,19 +4,21 @@
 
 use std::time::Duration;
 
-use controller::{Command, State};
+use controller::{Command, Request, State};
 use cpu_time::ThreadTime;
 
 use super::deviation::{Deviation, Deviations};
 use super::pilot::{Answers, Decision, Pilot};
 use crate::describe::scenario::ControllerSpec;
+use crate::world::Reading;
 
 /// What the pilot was asked.
 #[expect(clippy::large_enum_variant, reason = "nearly all are steps")]
 enum Asked {
     Start(State<f64>, [f64; 4]),
     TakeOver(State<f64>, Command<f64>),
-    Step(State<f64>, f64, Decision),
+    SpeedFactor(f64),
+    Step(Reading, Request, f64, Decision),
 }
 
 /// Questions after which the twin answers them: so many at a time that the clock costs nothing.
@@ -60,7 +62,10 @@ impl<'a, A: Answers> Twinned<'a, A> {
             match asked {
                 Asked::Start(state, zeta) => twin.start(&state, zeta),
                 Asked::TakeOver(state, applied) => twin.take_over(&state, &applied),
-                Asked::Step(state, t_s, decision) => self.deviations.push(&decision, &twin.decide(&state, t_s)),
+                Asked::SpeedFactor(factor) => twin.set_speed_factor(factor),
+                Asked::Step(read, request, t_s, decision) => {
+                    self.deviations.push(&decision, &twin.decide(&read, request, t_s));
+                }
             }
         }
         self.cpu += begun.elapsed();
@@ -78,9 +83,14 @@ impl<A: Answers> Answers for Twinned<'_, A> {
         self.ask(Asked::TakeOver(*state, *applied));
     }
 
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        let decision = self.pilot.step(state, t_s)?;
-        self.ask(Asked::Step(*state, t_s, decision));
+    fn set_speed_factor(&mut self, factor: f64) {
+        self.pilot.set_speed_factor(factor);
+        self.ask(Asked::SpeedFactor(factor));
+    }
+
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+        let decision = self.pilot.step(read, request, t_s)?;
+        self.ask(Asked::Step(*read, request, t_s, decision));
         Some(decision)
     }
 }

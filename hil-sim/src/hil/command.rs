@@ -8,6 +8,7 @@ use comfy_table::Table;
 use serde::Serialize;
 
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target};
+use crate::describe::parameters::{Unsupported, parameters};
 use crate::describe::scenario::Scenario;
 use crate::fly::batch::Outcome;
 use crate::fly::flight::{Control, End};
@@ -132,10 +133,11 @@ pub fn fly_all(arguments: &Arguments, scenarios: Vec<Scenario>, control: Control
         ..Options::default()
     };
     for scenario in &scenarios {
-        super::parameters(&scenario.controller).map_err(|error| match error {
-            HilError::Unsupported(reason) => HilError::Unsupported(format!("{}: {reason}", scenario.name)),
-            other => other,
-        })?;
+        let unsupported = |reason| HilError::Unsupported(format!("{}: {reason}", scenario.name));
+        if scenario.requests.iter().any(|asked| asked.speed_factor.is_some()) {
+            return Err(unsupported("factors of the speed are for flights in this program".to_owned()));
+        }
+        parameters(&scenario.controller).map_err(|Unsupported(reason)| unsupported(reason))?;
     }
     let mut target = match (&arguments.place.port, &arguments.place.connect, &arguments.place.emulate) {
         (Some(port), ..) => {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::Endpoint;
+use crate::describe::parameters::Unsupported;
 
 /// Why a flight with a target could not begin or go on.
 #[derive(Debug, thiserror::Error)]
@@ -146,4 +147,10 @@ fn ports(available: &[String]) -> String {
 fn said(stderr: &str) -> String {
     let stderr = stderr.trim();
     if stderr.is_empty() { String::new() } else { format!(": {stderr}") }
+}
+
+impl From<Unsupported> for HilError {
+    fn from(Unsupported(reason): Unsupported) -> Self {
+        Self::Unsupported(reason)
+    }
 }

@@ -10,8 +10,10 @@ use rig::{Refused, parameter, run};
 
 use super::line::Line;
 use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
+use crate::describe::parameters::parameters;
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
+use crate::world::Reading;
 
 /// How its first state finds the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +142,7 @@ impl Target {
             Law::Track { reference, .. } => reference.rate,
             Law::Follow { .. } => 0.0,
         };
-        let parameters = super::parameters(&scenario.controller)?.cast::<f32>();
+        let parameters = parameters(&scenario.controller)?.cast::<f32>();
         self.limits = (parameters.get(parameter!("LIM_T_MAX")), parameters.run(run!("LIM_TAU_1" to "LIM_TAU_3")));
         let mut settings = Settings::from(parameters);
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
@@ -154,7 +156,8 @@ impl Target {
         self.configure(&settings)?;
         self.arm(true)?;
         (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
-        (self.zeta, self.begin, self.command) = ([0.0; 4], Begin::Begun, None);
+        let begin = if scenario.standing { Begin::Standing } else { Begin::Begun };
+        (self.zeta, self.begin, self.command) = ([0.0; 4], begin, None);
         (self.request, self.is_down) = (Request::Idle, false);
         self.epoch = Instant::now();
         Ok(())
@@ -442,8 +445,10 @@ impl Answers for Target {
         self.begin = Begin::On([0.0; 4]);
     }
 
-    fn step(&mut self, state: &State<f64>, t_s: f64) -> Option<Decision> {
-        let answer = self.fly(&Measured::from(state), Request::Follow, t_s);
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+        let Reading { state, uav, specific_force } = read;
+        let measured = Measured { state: Some(state), uav: uav.as_ref(), specific_force: *specific_force };
+        let answer = self.fly(&measured, request, t_s);
         answer.map_err(|error| self.failure = Some(error)).ok()
     }
 }

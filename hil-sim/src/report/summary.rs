@@ -47,7 +47,7 @@ pub fn json(outcomes: &[Outcome], reference: &Reference) -> String {
             title: &outcome.scenario.title,
             duration_s: outcome.scenario.duration_s,
             rate_hz: outcome.scenario.controller.rate_hz,
-            complete: outcome.flight.end == End::Complete,
+            complete: matches!(outcome.flight.end, End::Complete | End::Landed(_)),
             failure: outcome.flight.end.failure(),
             results: &outcome.flight.results,
             f32_f64_max_relative: outcome.flight.deviation.map(|deviation| deviation.max()),

@@ -8,5 +8,6 @@ pub mod estimate;
 pub mod eval;
 pub mod fit;
 mod json;
+pub mod pilot;
 pub mod plant;
 pub mod tune;

@@ -41,6 +41,8 @@ pub struct Ground {
     pub feet_below: f64,
     /// From the middle of that plane to each foot, at 45° to the body's axes, m, 0 to 10.
     pub feet_apart: f64,
+    /// A UAV that comes to it faster than this has crashed, m/s, 0 to 100.
+    pub crash_speed: f64,
 }
 
 impl Default for Ground {
@@ -54,6 +56,7 @@ impl Default for Ground {
             payload_height: 0.05,
             feet_below: 0.15,
             feet_apart: 0.2,
+            crash_speed: 2.0,
         }
     }
 }
@@ -73,7 +76,8 @@ impl Ground {
         check(at, "friction", self.friction, 0.0, 2.0)?;
         check(at, "payload_height", self.payload_height, 0.0, 10.0)?;
         check(at, "feet_below", self.feet_below, 0.0, 10.0)?;
-        check(at, "feet_apart", self.feet_apart, 0.0, 10.0)
+        check(at, "feet_apart", self.feet_apart, 0.0, 10.0)?;
+        check(at, "crash_speed", self.crash_speed, 0.0, 100.0)
     }
 
     /// The feet in body axes, m.

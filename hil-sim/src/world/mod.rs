@@ -74,7 +74,7 @@ pub use environment::{Air, Environment, PayloadStep, drag};
 pub use ground::Ground;
 pub use rotors::{Layout, RotorFailure, Rotors};
 pub use sensors::instruments::{InstrumentModel, Readings};
-pub use sensors::{Channel, SensorModel, Sensors, Window};
+pub use sensors::{Channel, Reading, SensorModel, Sensors, Window};
 pub use tethered::Tethered;
 pub use timing::Timing;
 
@@ -197,10 +197,24 @@ impl World {
         self.actuators.given().thrust
     }
 
-    /// The body's `state` now, read by the sensors. Once a period.
+    /// What the sensors make of the body, in `state` now. Once a period.
     #[inline]
-    pub fn read(&mut self, state: &State<f64>) -> State<f64> {
-        self.sensors.read(self.t_s, state)
+    pub fn read(&mut self, state: &State<f64>) -> Reading {
+        let state = self.sensors.read(self.t_s, state);
+        let Sensors { uav, accelerometer, .. } = self.spec.sensors;
+        // On a rod, the state says it all.
+        let apart = matches!(self.body, Body::Cable(_));
+        let uav = uav.unwrap_or(apart).then(|| {
+            let Bodies { uav_position, uav_velocity, .. } = self.body.bodies();
+            self.sensors.read_uav(self.t_s, [&uav_position, &uav_velocity], &state)
+        });
+        let specific_force = accelerometer.unwrap_or(apart).then(|| {
+            let mut acceleration = self.rates().uav;
+            acceleration.z -= self.body.vehicle().gravity;
+            let attitude = self.body.bodies().attitude;
+            self.sensors.read_force(self.t_s, &attitude.tr_mul(&acceleration))
+        });
+        Reading { state, uav, specific_force }
     }
 
     /// Whether the controller misses this sample. At most once a period.

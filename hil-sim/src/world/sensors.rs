@@ -10,6 +10,9 @@
 //! (rad, in N) and attitude likewise (rad, in body axes); both stay on their manifolds to second
 //! order, then exactly, except for `quantum`, which acts on the components read. The rod's rate is
 //! read orthogonal to the rod read.
+//!
+//! The UAV's own position and velocity, and its accelerometer, are channels likewise. They are given
+//! to the controller beside the state where `uav` and `accelerometer` say so.
 
 pub mod gnss;
 pub mod imu;
@@ -17,7 +20,7 @@ pub mod instruments;
 pub mod mocap;
 pub mod simple;
 
-use controller::{Matrix3, State, Vector3};
+use controller::{Matrix3, State, Uav, Vector3};
 use serde::Deserialize;
 
 use super::check;
@@ -44,6 +47,24 @@ impl Window {
     #[must_use]
     pub fn contains(&self, t_s: f64) -> bool {
         (self.at_s..self.at_s + self.for_s).contains(&t_s)
+    }
+}
+
+/// What the controller is given at a sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Load, rod and UAV.
+    pub state: State<f64>,
+    /// The UAV as its own navigation has it, where it does.
+    pub uav: Option<Uav<f64>>,
+    /// Specific force of the UAV's centre of mass in body axes, m/s², where it is measured.
+    pub specific_force: Option<Vector3<f64>>,
+}
+
+impl From<State<f64>> for Reading {
+    /// The state and nothing else.
+    fn from(state: State<f64>) -> Self {
+        Self { state, uav: None, specific_force: None }
     }
 }
 
@@ -83,6 +104,17 @@ pub struct Sensors {
     pub attitude: Channel,
     /// In body axes, rad/s.
     pub body_rate: Channel,
+    /// Whether the controller is given the UAV's own position and velocity; with a cable or ground
+    /// if left out.
+    pub uav: Option<bool>,
+    /// Of the UAV in N, m.
+    pub uav_position: Channel,
+    /// Of the UAV in N, m/s.
+    pub uav_velocity: Channel,
+    /// Whether it is given the specific force; likewise.
+    pub accelerometer: Option<bool>,
+    /// In body axes, m/s².
+    pub specific_force: Channel,
     /// Accelerometer and gyro, for an estimator; those of a vehicle in flight if left out.
     pub imu: Option<imu::Imu>,
     /// Satellite receiver, for an estimator, as what follows.
@@ -148,9 +180,9 @@ impl Channel {
 }
 
 impl Sensors {
-    /// The channels by name.
+    /// The channels by name: those of the state first.
     #[must_use]
-    pub fn channels(&self) -> [(&'static str, &Channel); 6] {
+    pub fn channels(&self) -> [(&'static str, &Channel); 9] {
         [
             ("position", &self.position),
             ("velocity", &self.velocity),
@@ -158,6 +190,9 @@ impl Sensors {
             ("rod_rate", &self.rod_rate),
             ("attitude", &self.attitude),
             ("body_rate", &self.body_rate),
+            ("uav_position", &self.uav_position),
+            ("uav_velocity", &self.uav_velocity),
+            ("specific_force", &self.specific_force),
         ]
     }
 
@@ -202,14 +237,31 @@ pub struct SensorModel {
     before: State<f64>,
     last: State<f64>,
     perfect: bool,
+    /// Of the UAV's own position, velocity and specific force.
+    own: [Memory; 3],
+}
+
+/// A channel's value at the last sample, and what was read then.
+#[derive(Clone, Copy, Debug, Default)]
+struct Memory {
+    before: Option<Vector3<f64>>,
+    last: Vector3<f64>,
+}
+
+impl Memory {
+    fn read(&mut self, channel: &Channel, now: &Vector3<f64>, sample: &mut Sample<'_>) -> Vector3<f64> {
+        let read = sample.vector(channel, now, &self.before.unwrap_or(*now), &self.last);
+        *self = Self { before: Some(*now), last: read };
+        read
+    }
 }
 
 impl SensorModel {
     /// `sensors` sampled every `period` s, from a flight that starts at `state`.
     #[must_use]
     pub fn new(sensors: Sensors, period: f64, state: &State<f64>, stream: Stream) -> Self {
-        let perfect = sensors.channels().iter().all(|(_, channel)| channel.is_off());
-        Self { sensors, period, stream, before: *state, last: *state, perfect }
+        let perfect = sensors.channels().iter().take(6).all(|(_, channel)| channel.is_off());
+        Self { sensors, period, stream, before: *state, last: *state, perfect, own: [Memory::default(); 3] }
     }
 
     /// What is read of `state` at `t_s`.
@@ -243,6 +295,25 @@ impl SensorModel {
         self.before = *state;
         self.last = State { position, velocity, rod, rod_rate, attitude, body_rate };
         self.last
+    }
+
+    /// What the UAV's own navigation makes of its `position` and `velocity`, with attitude and body
+    /// rate as they were `read`.
+    pub fn read_uav(&mut self, t_s: f64, [position, velocity]: [&Vector3<f64>; 2], read: &State<f64>) -> Uav<f64> {
+        let Self { sensors, period, stream, own: [of_position, of_velocity, _], .. } = self;
+        let mut sample = Sample { t_s, period: *period, stream };
+        Uav {
+            position: of_position.read(&sensors.uav_position, position, &mut sample),
+            velocity: of_velocity.read(&sensors.uav_velocity, velocity, &mut sample),
+            attitude: read.attitude,
+            body_rate: read.body_rate,
+        }
+    }
+
+    /// What the accelerometer makes of the specific `force`.
+    pub fn read_force(&mut self, t_s: f64, force: &Vector3<f64>) -> Vector3<f64> {
+        let Self { sensors, period, stream, own: [.., memory], .. } = self;
+        memory.read(&sensors.specific_force, force, &mut Sample { t_s, period: *period, stream })
     }
 }
 

@@ -62,6 +62,15 @@ impl PartialEq for PathSpec {
     }
 }
 
+impl Default for PathSpec {
+    /// The circle of the parameters' defaults.
+    fn default() -> Self {
+        let curve = CurveSpec::Numbers(Box::default());
+        let profiled = ProfiledSpec { curve, speed: SpeedSpec::Constant(1.0), yaw: YawSpec::Fixed(0.0) };
+        Self { kind: PathKind::Profiled(profiled), lap: OnceLock::new() }
+    }
+}
+
 impl PathSpec {
     /// A path of this kind.
     ///

@@ -1,12 +1,16 @@
 //! The fields of a scenario file, and their way into a validated [`Scenario`].
 
 use controller::{ActuatorLimits, ObserverParams, State, Vector3, VehicleParams};
+use rig::Parameters;
 use serde::Deserialize;
+use std::collections::BTreeMap;
 
 use super::gains::{self, GainFields, PoleField};
+use super::mission::{AskedFields, requests};
 use super::{ControllerSpec, EstimatorSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
+use crate::describe::parameters::set_named;
 use crate::study::check::{Fence, Limits};
 use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
 use witness::plant::VehicleParameters;
@@ -25,6 +29,8 @@ struct ScenarioFields {
     reference: Option<toml::Value>,
     initial: Option<toml::Value>,
     obstacle: Option<ObstacleFields>,
+    #[serde(default)]
+    request: Vec<AskedFields>,
     cable: Option<Cable>,
     ground: Option<Ground>,
     #[serde(default)]
@@ -64,6 +70,8 @@ struct ControllerFields {
     rotor_lag_s: f64,
     observer: ObserverFields,
     limits: Option<LimitFields>,
+    supervised: Option<bool>,
+    parameters: BTreeMap<String, f64>,
 }
 
 impl Default for ControllerFields {
@@ -82,6 +90,8 @@ impl Default for ControllerFields {
             rotor_lag_s: 0.0,
             observer: ObserverFields::default(),
             limits: None,
+            supervised: None,
+            parameters: BTreeMap::new(),
         }
     }
 }
@@ -191,13 +201,14 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     fields.estimator.map_or(Ok(()), |estimator| estimator.check("estimator"))?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
-    let mut bodies = None;
+    let (mut bodies, mut standing) = (None, false);
     let (initial, zeta) = match fields.initial {
         None => (initial("initial", &InitialFields::default())?, [0.0; 4]),
         Some(toml::Value::String(word)) if word == "steady" => steady(&law, &vehicle, &flown)?,
         Some(toml::Value::Table(table)) => {
             let given: InitialFields = read("initial", table)?;
             let x = initial("initial", &given)?;
+            standing = given.standing;
             bodies = apart("initial", &given, &x, &vehicle, fields.cable, fields.ground)?;
             (x, [0.0; 4])
         }
@@ -219,6 +230,9 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
             Ok(Obstacle { at_s, hold_s })
         })
         .transpose()?;
+    let requests = requests(fields.request, duration_s)?;
+    let parameters: Vec<(String, f64)> = fields.controller.parameters.into_iter().collect();
+    set_named("controller.parameters", &parameters, &mut Parameters::default())?;
     let steady_from_s =
         fields.steady_from_s.map(|from| within("steady_from_s", from, 0.0..=duration_s)).transpose()?;
 
@@ -236,10 +250,14 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
             rotor_lag_s: within("controller.rotor_lag_s", fields.controller.rotor_lag_s, 0.0..=0.5)?,
             observer: fields.controller.observer.params()?,
             limits: told_limits,
+            supervised: fields.controller.supervised.unwrap_or(!(requests.is_empty() && parameters.is_empty())),
+            parameters,
         },
         vehicle,
         initial,
         bodies,
+        standing,
+        requests,
         obstacle,
         cable: fields.cable,
         ground: fields.ground,

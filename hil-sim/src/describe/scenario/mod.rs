@@ -10,6 +10,7 @@
 //! initial = { position = [0.0, 9.0, -10.0], alpha = 0.0 }   # any of the paper's coordinates, or "steady": on the path
 //! # On a cable: the UAV anywhere in its reach, and with `standing` both on the ground, whatever their p3.
 //! # initial = { position = [0.5, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true, psi = 0.3 }
+//! request = [{ at_s = 0.0, do = "hold" }, { at_s = 20.0, do = "follow" }, { at_s = 60.0, do = "land" }]   # takes off, and ends on the ground
 //! limits = { max_thrust = 50.0, tilt_deg = 40.0 }   # of `hil-sim check`, see check::Limits::read
 //! obstacle = { at_s = 5.0, hold_s = 0.0 }
 //! path = { kind = "circle", radius = 5.0, p3 = -10.0, speed = -5.0 }          # law = "follow"
@@ -27,6 +28,7 @@
 //! rotor_lag_s = 0.0
 //! observer = { payload = 4.0, rod = 4.0, torque = 4.0 }                       # bandwidths, rad/s; 0 is off
 //! limits = { thrust = [3.0, 60.0], torque = [3.0, 3.0, 3.0] }                 # on its commands, N and N·m
+//! parameters = { POL_DESCENT = 0.3, ENV_ROD_LIM = 1.0 }                       # of envelope, approach, policy
 //! ```
 //!
 //! Every key, with unit, range and default, is in `docs/scenario.md`, by
@@ -43,12 +45,16 @@ mod estimator;
 mod fields;
 mod gains;
 mod library;
+mod mission;
 mod steady;
 
 pub use estimator::EstimatorSpec;
 pub use library::{CURVES, FIGURES, ROUTES, builtin};
+pub use mission::{Asked, Mission};
 
-use controller::{ActuatorLimits, Command, Gains, ObserverParams, Sampling, State, TrackGains, VehicleParams};
+use controller::{
+    ActuatorLimits, Command, Gains, ObserverParams, Request, Sampling, State, TrackGains, VehicleParams,
+};
 
 use crate::describe::course::{PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
@@ -74,6 +80,10 @@ pub struct Scenario {
     pub initial: [f64; 16],
     /// Both bodies at the start, where the cable between them may be slack.
     pub bodies: Option<Bodies>,
+    /// Both stand on the ground then, rotors off.
+    pub standing: bool,
+    /// What is asked for, in time's order; to follow from the start if nothing is.
+    pub requests: Vec<Asked>,
     /// An obstacle that stops the vehicle, if there is one.
     pub obstacle: Option<Obstacle>,
     /// What joins UAV and payload; the paper's rod if left out and there is no ground.
@@ -128,6 +138,10 @@ pub struct ControllerSpec {
     pub observer: ObserverParams<f64>,
     /// What it may command.
     pub limits: ActuatorLimits<f64>,
+    /// Whether envelope and policy are those of a flight, or so wide that the law flies alone.
+    pub supervised: bool,
+    /// Parameters of envelope, approach and policy, by name.
+    pub parameters: Vec<(String, f64)>,
 }
 
 impl ControllerSpec {
@@ -271,6 +285,18 @@ impl Scenario {
             Some(bodies) => World::apart(&self.world(), bodies, command, seed),
             None => World::new(&self.world(), start, command, seed),
         }
+    }
+
+    /// Whether the flight does what it is asked for, step by step, instead of following all the time.
+    #[must_use]
+    pub fn is_mission(&self) -> bool {
+        !self.requests.is_empty()
+    }
+
+    /// Whether it is to end on the ground.
+    #[must_use]
+    pub fn lands(&self) -> bool {
+        self.requests.last().is_some_and(|asked| asked.request == Some(Request::Land))
     }
 
     /// Control periods in the flight.

@@ -7,6 +7,7 @@ use crate::fly::batch::Outcome;
 use crate::fly::flight::Moment;
 use crate::fly::pilot::{Decision, Telemetry};
 use crate::fly::sight::Sight;
+use crate::world::Bodies;
 
 /// One logged instant of a flight.
 #[derive(Clone, Copy, Debug)]
@@ -36,17 +37,17 @@ impl Record {
         scenario: &Scenario,
         t_s: f64,
         state: State<f64>,
+        [uav_position, uav_velocity]: [Vector3<f64>; 2],
         distance_m: Option<f64>,
         decision: Option<Decision>,
     ) -> Self {
         let follows = matches!(scenario.controller.law, Law::Follow { .. });
         // ξ holds h1 … h1⁽⁵⁾, h2 … h2⁽⁵⁾, h3 …, h4.
         let errors = |Telemetry { xi, .. }: Telemetry| [xi[12], xi[17]];
-        let length = scenario.vehicle.rod_length;
         Self {
             t_s,
-            uav_position: state.position - state.rod * length,
-            uav_velocity: state.velocity - state.rod_rate * length,
+            uav_position,
+            uav_velocity,
             state,
             distance_m,
             errors: decision.and_then(|decision| decision.telemetry).filter(|_| follows).map(errors),
@@ -59,9 +60,14 @@ impl Record {
     #[must_use]
     pub fn of_flight(Outcome { scenario, flight, .. }: &Outcome) -> Vec<Self> {
         let samples = flight.log.iter();
-        let record = samples.map(|sample| Self {
-            specific_force: sample.specific_force,
-            ..Self::new(scenario, sample.t_s, State::from_paper(&sample.x), Some(sample.distance_m), sample.decision)
+        let record = samples.map(|sample| {
+            let state = State::from_paper(&sample.x);
+            let uav = [sample.uav_position, sample.uav_velocity];
+            let specific_force = sample.specific_force;
+            Self {
+                specific_force,
+                ..Self::new(scenario, sample.t_s, state, uav, Some(sample.distance_m), sample.decision)
+            }
         });
         record.collect()
     }
@@ -69,9 +75,11 @@ impl Record {
     /// What a watcher of a flight of `scenario` sees.
     #[must_use]
     pub fn of_moment(scenario: &Scenario, moment: &Moment<'_>) -> Self {
+        let Bodies { uav_position, uav_velocity, .. } = moment.body.bodies();
+        let uav = [uav_position, uav_velocity];
         Self {
             specific_force: moment.sight.map(Sight::specific_force),
-            ..Self::new(scenario, moment.t_s, *moment.state, moment.distance_m, moment.decision.copied())
+            ..Self::new(scenario, moment.t_s, *moment.state, uav, moment.distance_m, moment.decision.copied())
         }
     }
 

@@ -120,7 +120,7 @@ fn changes(table: &Table, name: &str) -> Vec<(f64, String)> {
 /// Why a flight did not reach its duration, in a sentence.
 pub fn failure(end: End, table: &Table) -> Option<String> {
     let (what, at_s, why) = match end {
-        End::Complete | End::Interrupted => return None,
+        End::Complete | End::Landed(_) | End::Interrupted => return None,
         End::Crashed(at_s) => ("Crashed", at_s, "on the ground".to_owned()),
         End::Lost(at_s) => ("Lost", at_s, format!("{LOST_M:.0} m or more from the path")),
         End::NotFinite(at_s) => ("Lost", at_s, "the state or the command stopped being a number".to_owned()),

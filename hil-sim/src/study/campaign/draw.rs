@@ -4,6 +4,7 @@ use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;
 use toml::{Table, Value};
 
+use crate::describe::formula::{Constants, Formula};
 use crate::describe::input::{Invalid, within};
 use crate::world::multibody::rotation;
 use crate::world::random::Stream;
@@ -24,11 +25,27 @@ pub enum Distribution {
     Ball(f64),
     /// One of these values, each as likely.
     Choice(Vec<Value>),
+    /// A number, or a list of them, computed from the campaign's variables.
+    Formula(Computed),
+}
+
+/// One formula, or one for each number of a list.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(untagged)]
+pub enum Computed {
+    /// A number.
+    Number(String),
+    /// A list of numbers.
+    List(Vec<String>),
 }
 
 impl Distribution {
-    /// A value, or what is wrong with the distribution.
-    pub(super) fn draw(&self, field: &str, random: &mut Stream) -> Result<Value, Invalid> {
+    /// A value, given the `variables` drawn before, or what is wrong with the distribution.
+    pub(super) fn draw(&self, field: &str, variables: &Constants, random: &mut Stream) -> Result<Value, Invalid> {
+        let compute = |text: &String| {
+            let formula = Formula::parse(text, variables).map_err(|error| Invalid::new(field, error))?;
+            Ok(Value::Float(formula.evaluate([0.0; 3])))
+        };
         let numbers = |numbers: &[f64]| Value::Array(numbers.iter().map(|&number| Value::Float(number)).collect());
         Ok(match self {
             Self::Uniform([low, high]) => Value::Float(random.uniform(*low, *high)),
@@ -42,6 +59,10 @@ impl Distribution {
                     break numbers(&[radius * point.x, radius * point.y, 0.0]);
                 }
             },
+            Self::Formula(Computed::Number(text)) => compute(text)?,
+            Self::Formula(Computed::List(texts)) => {
+                Value::Array(texts.iter().map(compute).collect::<Result<_, Invalid>>()?)
+            }
             Self::Ball(radius) => numbers((random.ball() * *radius).as_slice()),
             Self::Choice(values) => {
                 let index = (random.unit() * values.len() as f64) as usize;
@@ -51,17 +72,24 @@ impl Distribution {
     }
 }
 
-/// Sets the key with this dotted path, making the tables on the way.
+/// Sets the key with this dotted path, making the tables on the way. A number leads to an entry of a
+/// list.
 pub(super) fn set(table: &mut Table, path: &str, value: Value) -> Result<(), Invalid> {
-    let (mut table, mut rest) = (table, path);
-    while let Some((head, tail)) = rest.split_once('.') {
-        let inner = table.entry(head).or_insert_with(|| Value::Table(Table::new()));
-        table = inner
-            .as_table_mut()
-            .ok_or_else(|| Invalid::new(format!("draw.\"{path}\""), format_args!("{head} is no table")))?;
-        rest = tail;
+    let mut steps = path.split('.');
+    let first = steps.next().unwrap_or_default();
+    let mut slot = table.entry(first).or_insert_with(|| Value::Table(Table::new()));
+    for step in steps {
+        let none = |what: &str| Invalid::new(format!("draw.\"{path}\""), format_args!("{what} {step}"));
+        slot = match slot {
+            Value::Table(table) => table.entry(step).or_insert_with(|| Value::Table(Table::new())),
+            Value::Array(list) => {
+                let entry = step.parse::<usize>().ok().and_then(|index| list.get_mut(index));
+                entry.ok_or_else(|| none("the list has no entry"))?
+            }
+            _ => return Err(none("no table to have")),
+        };
     }
-    table.insert(rest.to_owned(), value);
+    *slot = value;
     Ok(())
 }
 

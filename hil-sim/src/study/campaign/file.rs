@@ -11,7 +11,11 @@
 //! [start]                            # drawn for every flight, each uniform up to this
 //! distance_m = 5.0
 //! …
+//! [variables]                        # numbers that formulas below may use, drawn first
+//! size = { uniform = [0.5, 2.0] }
+//!
 //! [draw]                             # any key of the scenario, by its path
+//! "vehicle.uav_mass" = { formula = "2.5*size^3" }
 //! "vehicle.payload_mass" = { uniform = [0.25, 0.75] }
 //! "environment.air.wind" = { disc = 5.0 }
 //! path = { choice = [{ kind = "circle", … }, { kind = "ellipse", … }] }
@@ -21,12 +25,14 @@
 //! …
 //! ```
 
+use controller::State;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use toml::Table;
 
 use super::draw::{Distribution, Start, StartFields, set};
+use crate::describe::formula::Constants;
 use crate::describe::input::{Invalid, read, within};
 use crate::describe::path::PathSpec;
 use crate::describe::scenario::{Law, Scenario};
@@ -44,6 +50,8 @@ struct CampaignFields {
     scenario: Table,
     #[serde(default)]
     start: StartFields,
+    #[serde(default)]
+    variables: BTreeMap<String, Distribution>,
     #[serde(default)]
     draw: BTreeMap<String, Distribution>,
     #[serde(default)]
@@ -81,6 +89,7 @@ pub struct Campaign {
     pub approach: ApproachFields,
     scenario: Table,
     start: StartFields,
+    variables: BTreeMap<String, Distribution>,
     draw: BTreeMap<String, Distribution>,
     /// Paths that have been walked round, which costs more than a flight: most campaigns draw the
     /// same few again and again.
@@ -89,6 +98,16 @@ pub struct Campaign {
 
 /// Paths remembered.
 const WALKED: usize = 64;
+
+/// The text of the built-in campaign of this name, if there is one.
+#[must_use]
+pub fn builtin(name: &str) -> Option<&'static str> {
+    match name {
+        "campaign" => Some(include_str!("../../../scenarios/campaign.toml")),
+        "ground-to-ground" => Some(include_str!("../../../scenarios/ground-to-ground.toml")),
+        _ => None,
+    }
+}
 
 /// One flight of a campaign.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,11 +125,11 @@ impl Campaign {
     /// [`Invalid`] names the field that is unknown, missing or out of range.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
         let table: Table = toml::from_str(text).map_err(|error| Invalid::new("file", error.message()))?;
-        let CampaignFields { title, runs, ground_p3, scenario, start, draw, approach } = read("", table)?;
+        let CampaignFields { title, runs, ground_p3, scenario, start, variables, draw, approach } = read("", table)?;
         start.check()?;
         within("runs", runs, 1..=100_000_000)?;
         let walked = Mutex::default();
-        let campaign = Self { title, runs, ground_p3, approach, scenario, start, draw, walked };
+        let campaign = Self { title, runs, ground_p3, approach, scenario, start, variables, draw, walked };
         // Most mistakes show in the first flights; the others end the campaign with their flight's
         // number.
         for run in 0..8 {
@@ -126,12 +145,23 @@ impl Campaign {
     pub fn draw(&self, seed: Seed) -> Result<Drawn, Invalid> {
         let mut random = seed.stream(Purpose::Draw);
         let mut table = self.scenario.clone();
+        let mut variables = Constants::new();
+        for (name, distribution) in &self.variables {
+            let value = distribution.draw(&format!("variables.{name}"), &variables, &mut random)?;
+            let number = value.as_float().ok_or_else(|| Invalid::new(format!("variables.{name}"), "not a number"))?;
+            variables.insert(name.clone(), number);
+        }
         for (path, distribution) in &self.draw {
-            let value = distribution.draw(path, &mut random)?;
+            let value = distribution.draw(path, &variables, &mut random)?;
             set(&mut table, path, value)?;
         }
         let mut scenario = Scenario::from_table("campaign", table)?;
         let start = match &mut scenario.controller.law {
+            Law::Follow { path, .. } if scenario.standing => {
+                self.remember(path);
+                path.lap().map_err(|refusal| Invalid::new("scenario.path", refusal))?;
+                Start { state: State::from_paper(&scenario.initial), tilt_deg: 0.0, rod_deg: 0.0 }
+            }
             Law::Follow { path, .. } => {
                 self.remember(path);
                 let lap = path.lap().map_err(|refusal| Invalid::new("scenario.path", refusal))?;

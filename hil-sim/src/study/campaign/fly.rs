@@ -1,101 +1,54 @@
-//! A campaign's flight: the supervised law, and the row of the table it leaves.
+//! A campaign's flight, and the row of the table it leaves.
 
-use controller::{
-    ApproachLimits, Command, EnvelopeParams, Follow, Follower, Mode, Policy, Request, SetupError, State,
-};
-use controller::{Supervisor, Vehicle};
+use controller::{Mode, Request};
+use rig::parameter;
 use serde::{Deserialize, Serialize};
 
 use super::file::{ApproachFields, Campaign, Drawn};
 use crate::describe::input::Invalid;
-use crate::describe::path::FlownPath;
-use crate::describe::scenario::{ControllerSpec, Law};
+use crate::describe::parameters::without_path;
+use crate::describe::scenario::ControllerSpec;
 use crate::fly::fault::describe;
 use crate::fly::flight::{Control, End, LOST_M, Moment};
 use crate::fly::judge::{GOOD_M, Outcome, judge};
-use crate::fly::pilot::{Answers, Decision, Observed, Telemetry, padded};
+use crate::fly::pilot::{Decision, Pilot, Telemetry};
 use crate::world::Seed;
 
-/// The supervised law in f32, asked to follow its path from the first step on.
-pub struct Supervised {
-    supervisor: Supervisor<f32, Follow<f32, FlownPath<f32>>>,
-}
-
-impl Supervised {
-    /// The controller that `spec` describes, which must be for a path, with these limits for
-    /// joining it.
-    ///
-    /// # Errors
-    /// [`SetupError`] if rounding to f32 takes a parameter out of range, or the approach's limits
-    /// are.
-    pub fn new(spec: &ControllerSpec, approach: &ApproachFields) -> Result<Option<Self>, SetupError<f32>> {
-        let Law::Follow { path, gains } = &spec.law else { return Ok(None) };
-        let vehicle = Vehicle::new(spec.vehicle.cast())?;
-        let sampling = spec.sampling().cast();
-        let follower = Follower::new(vehicle, path.build()?, gains.cast(), sampling)?
-            .with_observer(spec.observer.cast())?
-            .with_limits(spec.limits.cast())?;
-        let gentle = ApproachLimits::gentle();
-        let or = |given: Option<f64>, other: f32| given.map_or(other, |value| value as f32);
-        let radians = |degrees: Option<f64>| degrees.map(f64::to_radians);
-        let approach = ApproachLimits {
-            speed: or(approach.speed, gentle.speed),
-            acceleration: or(approach.acceleration, gentle.acceleration),
-            tilt: or(radians(approach.tilt_deg), gentle.tilt),
-            rod_angle: or(radians(approach.rod_deg), gentle.rod_angle),
-            ..gentle
-        };
-        let supervisor = Supervisor::new(follower, EnvelopeParams::wide(), approach, Policy::default())?;
-        Ok(Some(Self { supervisor }))
+/// The controller of a campaign: `spec`'s under its supervisor in f32, joining its path within
+/// these limits.
+///
+/// # Errors
+/// [`Invalid`] if rounding to f32 takes a parameter out of range, or the approach's limits are.
+pub fn pilot(spec: &ControllerSpec, approach: &ApproachFields) -> Result<Pilot<f32>, Invalid> {
+    let spec = ControllerSpec { supervised: true, ..spec.clone() };
+    let mut parameters = without_path(&spec).map_err(|error| Invalid::new("controller", error))?;
+    let ApproachFields { speed, acceleration, tilt_deg, rod_deg } = *approach;
+    for (name, parameter, value) in [
+        ("speed", parameter!("APP_SPEED"), speed),
+        ("acceleration", parameter!("APP_ACC"), acceleration),
+        ("tilt_deg", parameter!("APP_TILT"), tilt_deg.map(f64::to_radians)),
+        ("rod_deg", parameter!("APP_ROD"), rod_deg.map(f64::to_radians)),
+    ] {
+        if let Some(value) = value {
+            let refused = |refused| Invalid::refused(format!("approach.{name}"), refused);
+            parameters.set(parameter, value).map_err(refused)?;
+        }
     }
-}
-
-impl Answers for Supervised {
-    fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
-        // A refused state leaves the law as it was, which the flight then shows.
-        let _ = self.supervisor.start(&state.cast(), zeta.map(|z| z as f32));
-    }
-
-    fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
-        // A refused state leaves the law as it was, which the flight then shows.
-        let _ = self.supervisor.take_over(&state.cast(), applied.cast());
-    }
-
-    #[inline]
-    fn step(&mut self, state: &State<f64>, _: f64) -> Option<Decision> {
-        let state = state.cast();
-        let (zeta, integral) = (*self.supervisor.sampler().zeta(), *self.supervisor.law().integral());
-        let output = self.supervisor.step(Some(&state), Request::Follow);
-        let (found, vehicle) = (self.supervisor.disturbance(), self.supervisor.sampler().vehicle());
-        let telemetry = self.supervisor.solution().map(|solution| Telemetry {
-            integral: integral.map(f64::from),
-            xi: padded([&solution.xi.h1, &solution.xi.h2, &solution.xi.h3, &solution.xi.h4]),
-            nu: solution.nu.map(f64::from),
-            margins: solution.margins.cast(),
-            observed: Observed::new(found, vehicle, &state.rod, solution.margins.lambda),
-        });
-        Some(Decision {
-            command: output.command.cast(),
-            zeta: zeta.map(f64::from),
-            mode: output.mode,
-            fault: output.fault,
-            disturbance: Some(found.cast()),
-            telemetry,
-        })
-    }
+    Pilot::of(&spec, &parameters)
 }
 
 /// What became of a flight.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// d_C below 25 cm throughout the last quarter.
+    /// d_C below 25 cm throughout the last quarter; of a flight that was to land: on the ground,
+    /// rotors off, the payload within 50 cm of its place.
     Good,
     /// Not that, and in hold at the end.
     Held,
     /// Not that, and in another mode at the end.
     Off,
-    /// A body came to the ground.
+    /// A body came to the ground that was not to, or too hard.
     Crashed,
     /// 100 m from the path.
     Lost,
@@ -119,7 +72,7 @@ pub struct Row {
     pub first_fault: String,
     /// The last fault that stood, empty if there was none.
     pub last_fault: String,
-    /// How often the vehicle fell back to another mode than engage or follow.
+    /// How often the vehicle fell back to another mode than engage or follow, asked to follow.
     pub falls: u32,
     /// Time in engage, s.
     pub engage_s: f64,
@@ -159,9 +112,19 @@ pub struct Row {
     pub non_finite: u32,
     /// Commands outside the limits.
     pub out_of_limits: u32,
+    /// Fastest touch of the UAV on the ground, m/s; empty if there was none.
+    pub uav_touchdown_m_s: Option<f64>,
+    /// Fastest touch of the payload on the ground, m/s; empty if there was none.
+    pub load_touchdown_m_s: Option<f64>,
+    /// Level distance of the payload from its place when landing was asked for, m; empty if it was
+    /// not.
+    pub load_place_m: Option<f64>,
     /// d_C at sixteen instants, evenly over the flight, m, separated by semicolons.
     pub dc_over_time_m: String,
 }
+
+/// A payload nearer to its place than this was set down in it, m.
+const IN_PLACE_M: f64 = 0.5;
 
 /// Instants at which a row has d_C.
 pub const INSTANTS: usize = 16;
@@ -178,9 +141,7 @@ pub fn fly_run(
 ) -> Result<Option<Row>, Invalid> {
     let Drawn { scenario, start } = campaign.draw(seed)?;
     let controller = &scenario.controller;
-    let mut pilot = Supervised::new(controller, &campaign.approach)
-        .map_err(|error| Invalid::new("scenario", error))?
-        .ok_or_else(|| Invalid::new("scenario.controller.law", "not \"follow\""))?;
+    let mut pilot = pilot(controller, &campaign.approach)?;
 
     // The limits as the controller has them, rounded to f32.
     let limits = controller.limits.cast::<f32>();
@@ -213,7 +174,7 @@ pub fn fly_run(
             }
         }
         let flies = matches!(mode, Mode::Join | Mode::Follow);
-        row.falls += u32::from(flying && !flies);
+        row.falls += u32::from(flying && !flies && moment.request == Request::Follow);
         flying = flies;
         match mode {
             Mode::Join => row.engage_s += period,
@@ -247,18 +208,29 @@ pub fn fly_run(
         watch(moment);
     });
     let Some(outcome) = outcome else { return Ok(None) };
-    let Outcome { end, dc_max_m, dc_rms_m } = outcome;
+    let Outcome { end, dc_max_m, dc_rms_m, touchdown } = outcome;
+    let is_to_land = scenario.lands();
+    let is_in_place = touchdown.load_place_m.is_some_and(|distance| distance <= IN_PLACE_M);
     (row.verdict, row.end_s) = match end {
         End::Crashed(t_s) => (Verdict::Crashed, t_s),
         End::Lost(t_s) => (Verdict::Lost, t_s),
         End::NotFinite(t_s) => (Verdict::NonFinite, t_s),
-        _ if outcome.is_good() => (Verdict::Good, scenario.duration_s),
+        End::Landed(t_s) => (if is_in_place { Verdict::Good } else { Verdict::Off }, t_s),
+        _ if outcome.is_good() && !is_to_land => (Verdict::Good, scenario.duration_s),
         _ if mode == Mode::Hold => (Verdict::Held, scenario.duration_s),
         _ => (Verdict::Off, scenario.duration_s),
     };
     over_time.resize(INSTANTS, LOST_M);
     row.dc_over_time_m = over_time.iter().map(|distance| format!("{distance:.4}")).collect::<Vec<_>>().join(";");
-    Ok(Some(Row { mode: format!("{mode:?}").to_lowercase(), dc_max_m, dc_rms_m, ..row }))
+    Ok(Some(Row {
+        mode: format!("{mode:?}").to_lowercase(),
+        dc_max_m,
+        dc_rms_m,
+        uav_touchdown_m_s: touchdown.uav_m_s,
+        load_touchdown_m_s: touchdown.load_m_s,
+        load_place_m: touchdown.load_place_m,
+        ..row
+    }))
 }
 
 impl Row {
@@ -291,6 +263,9 @@ impl Row {
             largest_torque: 0.0,
             non_finite: 0,
             out_of_limits: 0,
+            uav_touchdown_m_s: None,
+            load_touchdown_m_s: None,
+            load_place_m: None,
             dc_over_time_m: String::new(),
         }
     }

@@ -16,8 +16,8 @@ mod store;
 mod summary;
 
 pub use draw::{Distribution, Start, StartFields};
-pub use file::{ApproachFields, Campaign, Drawn};
-pub use fly::{Row, Supervised, Verdict, fly_run};
+pub use file::{ApproachFields, Campaign, Drawn, builtin};
+pub use fly::{Row, Verdict, fly_run, pilot};
 pub use page::write;
 pub use parquet::encode as parquet;
 pub use replay::{Replay, replay};

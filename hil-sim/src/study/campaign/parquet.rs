@@ -26,14 +26,14 @@ enum Kind {
 /// A column of [`Row`]: name, kind, unit, meaning.
 type Column = (&'static str, Kind, &'static str, &'static str);
 
-const COLUMNS: [Column; 27] = [
+const COLUMNS: [Column; 30] = [
     ("run", Kind::Integer, "1", "Number of the flight"),
     ("verdict", Kind::Text, "", "What became of it"),
     ("end_s", Kind::Number, "s", "When it ended"),
     ("mode", Kind::Text, "", "Mode at the end"),
     ("first_fault", Kind::Text, "", "First fault, empty if there was none"),
     ("last_fault", Kind::Text, "", "Last fault, empty if there was none"),
-    ("falls", Kind::Integer, "1", "Times it fell back to another mode than engage or follow"),
+    ("falls", Kind::Integer, "1", "Times it fell back from engage or follow, asked to follow"),
     ("engage_s", Kind::Number, "s", "Time in engage"),
     ("follow_s", Kind::Number, "s", "Time in follow"),
     ("reached_s", Kind::Number, "s", "Time from which d_C stayed below 25 cm; null if it did not"),
@@ -53,6 +53,9 @@ const COLUMNS: [Column; 27] = [
     ("largest_torque", Kind::Number, "N m", "Largest torque commanded about an axis"),
     ("non_finite", Kind::Integer, "1", "Commands that were not finite"),
     ("out_of_limits", Kind::Integer, "1", "Commands outside the limits"),
+    ("uav_touchdown_m_s", Kind::Number, "m/s", "Fastest touch of the UAV on the ground; null if there was none"),
+    ("load_touchdown_m_s", Kind::Number, "m/s", "Fastest touch of the payload on the ground; null if there was none"),
+    ("load_place_m", Kind::Number, "m", "Level distance of the payload from its place; null if it was not to land"),
     ("dc_over_time_m", Kind::List, "m", "d_C at instants evenly over the flight"),
 ];
 

@@ -30,6 +30,7 @@ pub fn replay(campaign: &Campaign, seed: Seed, control: Control<'_>) -> Result<O
     Ok(row.map(|row| {
         let log = Table::new(&format!("replay-{}", seed.run), &campaign.title, &records);
         let end = match row.verdict {
+            Verdict::Good if scenario.lands() => End::Landed(row.end_s),
             Verdict::Good | Verdict::Held | Verdict::Off => End::Complete,
             Verdict::Crashed => End::Crashed(row.end_s),
             Verdict::Lost => End::Lost(row.end_s),

@@ -20,7 +20,8 @@ pub struct Summary {
     pub runs: usize,
     /// Of all random numbers.
     pub seed: u64,
-    /// Share of flights with d_C below 25 cm throughout the last quarter.
+    /// Share of flights with d_C below 25 cm throughout the last quarter; of those that are to land,
+    /// on the ground with rotors off and the payload in its place.
     pub success_rate: f64,
     /// Clopper and Pearson's interval for it, of 95 % confidence.
     pub success_interval: [f64; 2],
@@ -30,8 +31,10 @@ pub struct Summary {
     pub held: usize,
     /// Flights that had not and ended in another mode.
     pub off: usize,
-    /// Flights that ended on the ground or 100 m from the path.
+    /// Flights that ended on the ground, but for those that landed.
     pub crashed: usize,
+    /// Flights that ended 100 m from the path.
+    pub lost: usize,
     /// Flights with a command or state that was not finite.
     pub non_finite: usize,
     /// Flights with a command outside its limits.
@@ -49,6 +52,12 @@ pub struct Summary {
     /// Share of the variance of d_C's rank that each drawn number explains alone (ε² over 20 bins),
     /// largest first; empty below 100 flights.
     pub sensitivity: Vec<(&'static str, f64)>,
+    /// Fastest touch of a UAV on the ground, m/s; null if none touched it.
+    pub worst_uav_touchdown_m_s: Option<f64>,
+    /// Fastest touch of a payload on the ground, m/s; likewise.
+    pub worst_load_touchdown_m_s: Option<f64>,
+    /// Largest distance of a payload from its place, m; null if none was to land.
+    pub worst_load_place_m: Option<f64>,
     /// First faults by how many flights had them.
     pub faults: BTreeMap<String, usize>,
     /// Every flight that failed, with its reason.
@@ -83,6 +92,7 @@ pub fn summarize(seed: u64, rows: &[Row]) -> Summary {
         *faults.entry(row.first_fault.clone()).or_default() += 1;
     }
     let good = count(&[Verdict::Good]);
+    let worst = |value: fn(&Row) -> Option<f64>| rows.iter().filter_map(value).reduce(f64::max);
     Summary {
         runs: rows.len(),
         seed,
@@ -92,13 +102,17 @@ pub fn summarize(seed: u64, rows: &[Row]) -> Summary {
         good,
         held: count(&[Verdict::Held]),
         off: count(&[Verdict::Off]),
-        crashed: count(&[Verdict::Crashed, Verdict::Lost]),
+        crashed: count(&[Verdict::Crashed]),
+        lost: count(&[Verdict::Lost]),
         non_finite: rows.iter().filter(|row| row.non_finite > 0 || row.verdict == Verdict::NonFinite).count(),
         out_of_limits: rows.iter().filter(|row| row.out_of_limits > 0).count(),
         fell_back: rows.iter().filter(|row| row.falls > 0).count(),
         dc_max_m: percentiles(rows.iter().map(|row| row.dc_max_m).collect()),
         dc_rms_m: percentiles(rows.iter().map(|row| row.dc_rms_m).collect()),
         reached_s: percentiles(rows.iter().filter_map(|row| row.reached_s).collect()),
+        worst_uav_touchdown_m_s: worst(|row| row.uav_touchdown_m_s),
+        worst_load_touchdown_m_s: worst(|row| row.load_touchdown_m_s),
+        worst_load_place_m: worst(|row| row.load_place_m),
         faults,
         failures: rows
             .iter()
@@ -122,10 +136,10 @@ impl Summary {
     #[must_use]
     pub fn text(&self, rows: &[Row]) -> String {
         let mut text = String::new();
-        let Self { runs, good, held, off, crashed, non_finite, out_of_limits, fell_back, .. } = self;
+        let Self { runs, good, held, off, crashed, lost, non_finite, out_of_limits, fell_back, .. } = self;
         let _ = writeln!(
             text,
-            "{runs} flights: {good} good ({:.2} %; 95 % sure of {:.2} to {:.2} %), {held} in hold, {off} in another mode, {crashed} crashed; \
+            "{runs} flights: {good} good ({:.2} %; 95 % sure of {:.2} to {:.2} %), {held} in hold, {off} in another mode, {crashed} crashed, {lost} lost; \
              {non_finite} with numbers that are not finite, {out_of_limits} outside limits; {fell_back} fell back on the way",
             100.0 * self.success_rate,
             100.0 * self.success_interval[0],
@@ -143,6 +157,15 @@ impl Summary {
             column.set_cell_alignment(CellAlignment::Right);
         }
         let _ = writeln!(text, "{}", table.trim_fmt());
+        if let Some(place) = self.worst_load_place_m {
+            let speed = |speed: Option<f64>| speed.map_or("never".to_owned(), |speed| format!("{speed:.2} m/s"));
+            let (load, uav) = (speed(self.worst_load_touchdown_m_s), speed(self.worst_uav_touchdown_m_s));
+            let _ = writeln!(
+                text,
+                "on the ground, the worst: payload at {load}, {} from its place; UAV at {uav}",
+                length(place)
+            );
+        }
         for (fault, flights) in &self.faults {
             let _ = writeln!(text, "first fault {fault}: {flights}");
         }

@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::describe::scenario::{Scenario, ScenarioError};
 use crate::fly::flight::{Control, End};
 use crate::fly::judge::{Outcome, judge};
-use crate::study::campaign::{ApproachFields, Supervised};
+use crate::study::campaign::{self, ApproachFields};
 use crate::study::compare;
 use crate::world::Seed;
 use crate::world::random::Purpose;
@@ -98,9 +98,7 @@ fn fly_one(base: &Scenario, case: &Case, seed: Seed, control: Control<'_>) -> Re
         start.rod = [across * libm::cos(turn), across * libm::sin(turn), libm::cos(angle)].into();
     }
     let scenario = case.scenario(base, &mut random)?;
-    let mut pilot = Supervised::new(&scenario.controller, &ApproachFields::default())
-        .ok()
-        .flatten()
+    let mut pilot = campaign::pilot(&scenario.controller, &ApproachFields::default())
         .expect("the table's scenarios can be set up, as a test shows");
     let mut errors = Errors::new(&scenario);
     let outcome = judge(&scenario, start, seed, None, control, &mut pilot, &mut |moment| errors.push(moment));

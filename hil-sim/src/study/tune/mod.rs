@@ -18,7 +18,7 @@ mod report;
 
 pub use report::{table, trade};
 
-use controller::{EnvelopeParams, SetupError, Vector3};
+use controller::{EnvelopeParams, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -42,17 +42,6 @@ pub const BANDWIDTHS: [f64; 6] = [2.0, 4.0, 6.0, 8.0, 10.0, 12.0];
 
 /// Points of the path at which flights may start.
 const STARTS: usize = 64;
-
-/// A scenario that cannot be tuned.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum TuneError {
-    /// A field of it, with the settings tried in place.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-    /// The controller refuses it in f32.
-    #[error(transparent)]
-    Setup(#[from] SetupError<f32>),
-}
 
 /// What a setting did, over all flights.
 #[derive(Clone, Debug, Serialize)]
@@ -125,14 +114,14 @@ pub fn with_settings(table: &toml::Table, scale: f64, bandwidth: f64) -> toml::T
 /// `table` are a scenario's keys.
 ///
 /// # Errors
-/// [`TuneError`] for an invalid scenario, one that does not follow a closed path, or one that does
+/// [`Invalid`] for an invalid scenario, one that does not follow a closed path, or one that does
 /// not take one of the settings.
 pub fn tune(
     table: &toml::Table,
     (scales, bandwidths): (&[f64], &[f64]),
     (runs, seed): (usize, u64),
     control: Control<'_>,
-) -> Result<Option<Tuning>, TuneError> {
+) -> Result<Option<Tuning>, Invalid> {
     let mut rows = Vec::new();
     for (&scale, &bandwidth) in scales.iter().flat_map(|scale| bandwidths.iter().map(move |o| (scale, o))) {
         let scenario = Scenario::from_table("tune", with_settings(table, scale, bandwidth))?;

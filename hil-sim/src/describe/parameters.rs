@@ -1,21 +1,26 @@
-//! A scenario's controller as the parameters of the controller that flies it.
+//! A scenario's controller as the parameters of the controller that flies it: here, on a board and
+//! in C the same.
 
 use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
 use rig::{HARMONICS, Parameter, Parameters, Refused, Run, Shape, parameter, run};
 
-use super::HilError;
+use crate::describe::input::{Invalid, join};
 use crate::describe::path::{CurveSpec, PathKind, PathSpec, SpeedSpec, YawSpec};
 use crate::describe::scenario::{ControllerSpec, Law};
 
-/// The parameters with which a [`Rig`](rig::Rig) makes the law that `spec` describes. That is the
-/// law alone: so its supervisor gets the widest envelope there is, and rotors that give whatever
-/// the law's own limits let through.
+/// A controller that has no parameters, or a number outside a parameter's range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct Unsupported(pub String);
+
+/// The parameters with which a [`Rig`](rig::Rig) makes the controller that `spec` describes. A law
+/// that is to fly alone gets the widest envelope there is. Rotors give whatever the law's own limits
+/// let through.
 ///
 /// # Errors
-/// [`HilError::Unsupported`] for a path that has no parameters, or a number outside a parameter's
-/// range.
-pub fn parameters(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
-    let mut parameters = law(spec)?;
+/// [`Unsupported`] for a path that has no parameters, or a number outside a parameter's range.
+pub fn parameters(spec: &ControllerSpec) -> Result<Parameters<f64>, Unsupported> {
+    let mut parameters = without_path(spec)?;
     if let Law::Follow { path, .. } = &spec.law {
         set_path(path, &mut parameters)?;
     }
@@ -25,8 +30,8 @@ pub fn parameters(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
 /// The same for any path: all but the path's own.
 ///
 /// # Errors
-/// [`HilError::Unsupported`] for a number outside a parameter's range.
-pub fn law(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
+/// [`Unsupported`] for a number outside a parameter's range.
+pub fn without_path(spec: &ControllerSpec) -> Result<Parameters<f64>, Unsupported> {
     let mut parameters = Parameters::default();
     let all = &mut parameters;
     let VehicleParams { payload_mass, uav_mass, rod_length, inertia, gravity } = spec.vehicle;
@@ -44,7 +49,11 @@ pub fn law(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
     // flight.
     run_of(all, run!("LIM_T_MIN" to "LIM_T_MAX"), [min_thrust.max(0.0), max_thrust.min(1e4)])?;
     run_of(all, run!("LIM_TAU_1" to "LIM_TAU_3"), max_torque.map(|torque| torque.min(1e3)))?;
-    open_up(all)?;
+    // 10 kN at full speed each, on arms of 10 m, with as much torque as thrust.
+    run_of(all, run!("ROT_ARM" to "ROT_W_MAX"), [10.0, 1e-4, 1e-4, 0.0, 1e4])?;
+    if !spec.supervised {
+        open_up(all)?;
+    }
     match &spec.law {
         Law::Follow { gains, .. } => {
             let Gains { k1, k2, k3, k4, integral } = *gains;
@@ -66,26 +75,25 @@ pub fn law(spec: &ControllerSpec) -> Result<Parameters<f64>, HilError> {
             one(all, parameter!("REF_RATE"), reference.rate)?;
         }
     }
+    set_named("", &spec.parameters, all).map_err(|invalid| Unsupported(invalid.to_string()))?;
     Ok(parameters)
 }
 
 /// Sets what the law alone does not have: to nothing that would ever change what it does.
-fn open_up(all: &mut Parameters<f64>) -> Result<(), HilError> {
+fn open_up(all: &mut Parameters<f64>) -> Result<(), Unsupported> {
     // Rod, thrust axis and roll; tension, thrust, path and reach.
     run_of(all, run!("ENV_ROD_WARN" to "ENV_ROLL_LIM"), [1.5; 6])?;
     run_of(all, run!("ENV_TENS_WARN" to "ENV_REACH_LIM"), [0.0; 8])?;
-    one(all, parameter!("POL_LOAD_LOST"), -1.0)?;
-    // 10 kN at full speed each, on arms of 10 m, with as much torque as thrust.
-    run_of(all, run!("ROT_ARM" to "ROT_W_MAX"), [10.0, 1e-4, 1e-4, 0.0, 1e4])
+    one(all, parameter!("POL_LOAD_LOST"), -1.0)
 }
 
 /// Sets the path's curve, speed and yaw.
-fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), HilError> {
-    let formula = |what: &str| Err(HilError::Unsupported(format!("{what} by formula is for simulation only")));
+fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), Unsupported> {
+    let formula = |what: &str| Err(Unsupported(format!("{what} by formula is for simulation only")));
     let path = match &path.kind {
         PathKind::Profiled(path) => path,
         PathKind::Route(_) => {
-            return Err(HilError::Unsupported("a route is for simulation only: the target takes no table".into()));
+            return Err(Unsupported("a route is for simulation only: the target takes no table".into()));
         }
     };
     match &path.curve {
@@ -100,7 +108,7 @@ fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), HilError> 
                 let (few, beyond) = rows.split_at(HARMONICS);
                 let fits = beyond.iter().all(|row| *row == [0.0; 3]);
                 fits.then(|| std::array::from_fn(|index| few[index / 3][index % 3]))
-                    .ok_or_else(|| HilError::Unsupported(format!("the curve has more than {HARMONICS} harmonics")))
+                    .ok_or_else(|| Unsupported(format!("the curve has more than {HARMONICS} harmonics")))
             };
             one(all, parameter!("PATH_KIND"), f64::from(Shape::Fourier as u8))?;
             run_of(all, run!("PATH_CTR_1" to "PATH_CTR_3"), harmonics.center)?;
@@ -125,14 +133,28 @@ fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), HilError> 
     run_of(all, run!("PATH_YAW_KIND" to "PATH_YAW_Y"), [kind, yaw, x, y])
 }
 
-fn one(all: &mut Parameters<f64>, parameter: Parameter, value: f64) -> Result<(), HilError> {
+/// Sets envelope, approach and policy by name; `at` is the table's.
+///
+/// # Errors
+/// [`Invalid`] for another name, or a value that the parameter does not take.
+pub fn set_named(at: &str, named: &[(String, f64)], all: &mut Parameters<f64>) -> Result<(), Invalid> {
+    for (name, value) in named {
+        let of_flight = ["ENV_", "APP_", "POL_"].iter().any(|prefix| name.starts_with(prefix));
+        let found = Parameter::find(name).filter(|_| of_flight);
+        let parameter = found.ok_or_else(|| Invalid::new(join(at, name), "no parameter ENV_*, APP_* or POL_*"))?;
+        all.set(parameter, *value).map_err(|refused| Invalid::refused(join(at, name), refused))?;
+    }
+    Ok(())
+}
+
+fn one(all: &mut Parameters<f64>, parameter: Parameter, value: f64) -> Result<(), Unsupported> {
     all.set(parameter, value).map_err(unsupported)
 }
 
-fn run_of<const N: usize>(all: &mut Parameters<f64>, run: Run<N>, values: [f64; N]) -> Result<(), HilError> {
+fn run_of<const N: usize>(all: &mut Parameters<f64>, run: Run<N>, values: [f64; N]) -> Result<(), Unsupported> {
     all.set_run(run, values).map_err(unsupported)
 }
 
-fn unsupported(refused: Refused<f64>) -> HilError {
-    HilError::Unsupported(refused.to_string())
+fn unsupported(refused: Refused<f64>) -> Unsupported {
+    Unsupported(refused.to_string())
 }

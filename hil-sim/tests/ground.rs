@@ -1,0 +1,184 @@
+//! Flights from the ground to the ground: whole missions by the one controller, what is measured of
+//! their landings, what counts as a crash, and the campaign of them.
+
+use controller::Mode;
+use hil_sim::describe::scenario::Scenario;
+use hil_sim::fly::flight::{Control, End, Entry, Moment, Plan, fly};
+use hil_sim::fly::pilot::Pilot;
+use hil_sim::fly::run::{Arithmetic, fly_simply};
+use hil_sim::study::campaign::{self, Campaign, Verdict, fly_run};
+use hil_sim::world::Seed;
+
+/// The paper's vehicle with its load beside it, and 2 m of cable; `more` are keys before all tables.
+fn scenario(requests: &str, more: &str) -> Scenario {
+    let text = format!(
+        r#"
+        duration_s = 90.0
+        path = {{ kind = "circle", radius = 4.0, p3 = -6.0, speed = 1.0 }}
+        initial = {{ position = [0.8, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true }}
+        request = [{requests}]
+        {more}
+        [ground]
+        [controller]
+        law = "follow"
+        rate_hz = 250.0
+        poles = [[-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5], [-2, -3]]
+        observer = {{ payload = 4.0, rod = 4.0, torque = 4.0 }}
+        limits = {{ thrust = [1.5, 65.0], torque = [3.0, 3.0, 1.0] }}
+        "#
+    );
+    Scenario::parse("ground.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Flies it; how it ended, and the modes on the way.
+fn flown(scenario: &Scenario, watch: &mut dyn FnMut(&Moment<'_>)) -> (End, Vec<Mode>) {
+    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it can be set up");
+    let start = controller::State::from_paper(&scenario.initial);
+    let (seed, control) = (Seed::default(), Control::alone());
+    let plan = Plan { start, seed, entry: Entry::Hover, ground_p3: None, distance_every: 50, control };
+    let mut modes: Vec<Mode> = Vec::new();
+    let end = fly(scenario, &plan, &mut pilot, &mut |moment| {
+        if let Some(decision) = moment.decision
+            && modes.last() != Some(&decision.mode)
+        {
+            modes.push(decision.mode);
+        }
+        watch(moment);
+    });
+    (end, modes)
+}
+
+const WHOLE: &str = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "hold" }, { at_s = 12.0, do = "follow" },
+    { at_s = 30.0, do = "hold" }, { at_s = 40.0, do = "land" }"#;
+
+/// No touch is harder than this, m/s, and a payload is set down no further from its place, m.
+const SOFT: f64 = 0.6;
+const IN_PLACE: f64 = 0.5;
+
+#[test]
+fn a_mission_goes_off_the_ground_along_the_path_and_back() {
+    let scenario = scenario(WHOLE, "");
+    let mut touchdown = None;
+    let (end, modes) = flown(&scenario, &mut |moment| touchdown = Some(*moment.touchdown));
+    let whole = [Mode::Idle, Mode::TakeOff, Mode::Hold, Mode::Join, Mode::Follow, Mode::Hold, Mode::Land, Mode::Off];
+    assert_eq!(modes, whole);
+    assert!(matches!(end, End::Landed(t_s) if t_s < 90.0), "{end:?}");
+    let touchdown = touchdown.expect("it was watched");
+    assert!(touchdown.uav_m_s.is_some_and(|speed| (0.1..SOFT).contains(&speed)), "{touchdown:?}");
+    assert!(touchdown.load_m_s.is_some_and(|speed| (0.1..SOFT).contains(&speed)), "{touchdown:?}");
+    assert!(touchdown.load_place_m.is_some_and(|distance| distance < IN_PLACE), "{touchdown:?}");
+    // The metrics of `run` are the same.
+    let results = fly_simply(&scenario, Arithmetic::F32).unwrap().results;
+    let of_run = [results.uav_touchdown_m_s, results.load_touchdown_m_s];
+    for (run, seen) in of_run.into_iter().zip([touchdown.uav_m_s, touchdown.load_m_s]) {
+        assert!((run.unwrap() - seen.unwrap()).abs() < 0.05, "{run:?} {seen:?}");
+    }
+}
+
+/// Whenever it is asked to land, it stands in the end: from every moment of a take-off, and from the
+/// way to the path and along it.
+#[test]
+fn a_landing_may_be_asked_for_at_any_moment() {
+    for at_s in [1.5_f64, 3.0, 5.0, 6.5, 7.5, 9.0, 13.0, 15.0, 20.0, 28.0] {
+        let requests = format!(
+            r#"{{ at_s = 0.0, do = "idle" }}, {{ at_s = 1.0, do = "hold" }}, {{ at_s = {}, do = "follow" }}, {{ at_s = {at_s}, do = "land" }}"#,
+            at_s.min(12.0)
+        );
+        let mut touchdown = None;
+        let (end, modes) = flown(&scenario(&requests, ""), &mut |moment| touchdown = Some(*moment.touchdown));
+        assert!(matches!(end, End::Landed(_)), "land at {at_s} s: {end:?}, {modes:?}");
+        let touchdown = touchdown.expect("it was watched");
+        for speed in [touchdown.uav_m_s, touchdown.load_m_s].into_iter().flatten() {
+            assert!(speed < SOFT, "land at {at_s} s: {touchdown:?}");
+        }
+    }
+}
+
+/// What may go wrong on the way down, and is no crash.
+#[test]
+fn it_lands_softly_whatever_the_cable_the_ground_and_the_sensors_do() {
+    for more in [
+        "cable = { snagged = { at_s = 42.0, for_s = 3.0 } }",
+        "cable = { hooked = { at_s = 0.0, for_s = 43.0 } }",
+        "cable = { hook = [0.0, 0.0, 0.1], ea = 500.0, damping = 4.0 }",
+        "sensors = { uav_position = { noise = 0.05 }, uav_velocity = { noise = 0.1 } }",
+        "sensors = { accelerometer = false }",
+        "sensors = { position = { nan = { at_s = 38.0, for_s = 60.0 } } }",
+        "actuators = { thrust_scale = 0.85 }",
+        "environment = { uav_force = [1.0, 0.0, -2.0] }",
+    ] {
+        let mut touchdown = None;
+        let (end, modes) = flown(&scenario(WHOLE, more), &mut |moment| touchdown = Some(*moment.touchdown));
+        assert!(matches!(end, End::Landed(_)), "{more}: {end:?}, {modes:?}");
+        assert!(touchdown.and_then(|t| t.uav_m_s).is_some_and(|speed| speed < SOFT), "{more}: {touchdown:?}");
+    }
+}
+
+#[test]
+fn a_touch_that_is_no_landing_is_a_crash() {
+    let off = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "hold" }, { at_s = 12.0, do = "off" }"#;
+    let (end, _) = flown(&scenario(off, ""), &mut |_| {});
+    assert!(matches!(end, End::Crashed(t_s) if (12.0..14.0).contains(&t_s)), "{end:?}");
+    // A ground that is told to bear less than a landing's speed.
+    let mut brittle = scenario(WHOLE, "");
+    brittle.ground.as_mut().expect("there is ground").crash_speed = 0.1;
+    let (end, _) = flown(&brittle, &mut |_| {});
+    assert!(matches!(end, End::Crashed(_)), "{end:?}");
+}
+
+#[test]
+fn pause_and_go_on_are_asked_for_like_everything() {
+    let requests = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "hold" }, { at_s = 12.0, do = "follow" },
+        { at_s = 30.0, speed_factor = 0.0 }, { at_s = 42.0, speed_factor = 1.0 }"#;
+    let mut scenario = scenario(requests, "");
+    scenario.duration_s = 55.0;
+    let (mut paused, mut gone_on) = (f64::INFINITY, 0.0_f64);
+    flown(&scenario, &mut |moment| {
+        let velocity = &moment.state.velocity;
+        let speed = velocity.dot(velocity).sqrt();
+        if (38.0..42.0).contains(&moment.t_s) {
+            paused = paused.min(speed);
+        }
+        if moment.t_s > 50.0 {
+            gone_on = gone_on.max(speed);
+        }
+    });
+    assert!(paused < 0.05 && (gone_on - 1.0).abs() < 0.05, "{paused} {gone_on}");
+}
+
+#[test]
+fn what_is_asked_for_is_checked() {
+    let error = |text: &str| Scenario::parse("ground.toml", text).unwrap_err().to_string();
+    assert!(
+        error("request = [{ at_s = 5.0, do = \"land\" }, { at_s = 4.0, do = \"off\" }]").contains("request[1].at_s")
+    );
+    assert!(error("request = [{ at_s = 5.0 }]").contains("request[0].do"));
+    assert!(error("request = [{ at_s = 50.0, do = \"land\" }]").contains("50 is outside 0 to 10"));
+    assert!(error("request = [{ at_s = 5.0, do = \"fly\" }]").contains("fly"));
+    assert!(error("controller = { parameters = { POL_DESCENT = -1.0 } }").contains("POL_DESCENT"));
+    assert!(error("controller = { parameters = { VEH_M_LOAD = 1.0 } }").contains("VEH_M_LOAD"));
+}
+
+/// A few missions of the built-in campaign: any vehicle, rope, wind and wrong number.
+#[test]
+fn the_campaign_from_ground_to_ground_lands_in_its_place() {
+    let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
+    let rows: Vec<_> = (0..12)
+        .map(|run| {
+            let row = fly_run(&campaign, Seed { batch: 3, run }, Control::alone(), &mut |_| {});
+            row.unwrap().expect("nobody interrupts it")
+        })
+        .collect();
+    for row in &rows {
+        assert_eq!(row.verdict, Verdict::Good, "{row:?}");
+        let worst = row.uav_touchdown_m_s.into_iter().chain(row.load_touchdown_m_s).fold(0.0, f64::max);
+        assert!(worst < SOFT && row.falls == 0, "{row:?}");
+    }
+    let summary = campaign::summarize(3, &rows);
+    assert_eq!((summary.success_rate, summary.crashed, summary.lost), (1.0, 0, 0));
+    assert!(summary.worst_load_place_m.is_some_and(|distance| distance < IN_PLACE));
+    // What was drawn is as various as the campaign says.
+    let lengths: Vec<f64> =
+        (0..200).map(|run| campaign.draw(Seed { batch: 3, run }).unwrap().scenario.vehicle.rod_length).collect();
+    assert!(lengths.iter().any(|length| *length < 1.0) && lengths.iter().any(|length| *length > 12.0));
+}
