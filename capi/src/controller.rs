@@ -3,12 +3,13 @@
 use core::mem::size_of;
 
 use controller::{Command, Frames, Measured, Refused, Request, Route, State, Vector3};
-use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError};
+use rig::{Rig, SetupError};
 
 use crate::frames::{frames, uav};
 use crate::parameters::Stored;
+use crate::path::{self, FlownPath};
 use crate::pointer::{Sized32, exclusive, optional, shared, write_sized};
-use crate::route::{LentTable, StoredRoute};
+use crate::route::StoredRoute;
 use crate::status::{Status, code, setup, tell};
 use crate::text::{fault_code, margin_code, mode_code};
 use crate::types::{SlungError, SlungOutput, SlungState, SlungTelemetry, SlungUav, SlungWrench};
@@ -16,8 +17,6 @@ use crate::types::{SlungError, SlungOutput, SlungState, SlungTelemetry, SlungUav
 /// Written by [`slung_create`]; anything else is memory in which no controller is.
 const CREATED: u32 = 0x51A6_C081;
 
-/// Any of the parameters' paths, or a route in lent memory.
-type FlownPath = AnyPath<f32, NoFormula, NoFormula, HARMONICS, LentTable>;
 type Controller = Rig<f32, FlownPath>;
 
 /// `slung_controller`: the caller's memory holds this.
@@ -92,11 +91,11 @@ pub unsafe extern "C" fn slung_create_on(
             unsafe { tell(error, status, field, numbers) }
         };
         let path = if route.is_null() {
-            rig::path(parameters).map_err(|error| refused(error.into()))?
+            path::of(parameters).map_err(|error| refused(error.into()))?
         } else {
             // SAFETY: the caller's promise.
             let (table, end) = unsafe { shared(route)? }.parts()?;
-            AnyPath::Route(Route::new(table).map_err(|error| refused(error.into()))?.with_end(end))
+            FlownPath::Route(Route::new(table).map_err(|error| refused(error.into()))?.with_end(end))
         };
         let rig = Rig::on(path, parameters).map_err(refused)?;
         // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no

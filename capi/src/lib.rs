@@ -9,6 +9,7 @@ mod controller;
 mod estimator;
 mod frames;
 mod parameters;
+mod path;
 mod pointer;
 mod route;
 mod status;

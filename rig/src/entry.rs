@@ -100,7 +100,7 @@ pub struct Entry<T = f32> {
     pub min: T,
     /// Largest allowed value.
     pub max: T,
-    /// What it means, in one line.
+    /// What it means, in one line; empty without the feature `texts`.
     pub text: &'static str,
 }
 
@@ -116,6 +116,7 @@ impl Entry<f64> {
     ) -> Self {
         let (min, max) = range;
         assert!(min <= default && default <= max, "a default outside its range");
+        let text = if cfg!(feature = "texts") { text } else { "" };
         Self { name: Name::new(name), field, unit, kind: Kind::Real, default, min, max, text }
     }
 

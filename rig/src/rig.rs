@@ -1,8 +1,8 @@
 //! The controller as it flies: a supervised law of either kind, with limits and rotors.
 
 use controller::{
-    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Measured, Mode, Path, Real,
-    Reference, Refused, Request, Solution, State, Supervisor, Track, Tracker, Vector3, Vehicle, dynamics,
+    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Measured, Mode, Path, Real, Refused,
+    Request, Sampling, Solution, State, Supervisor, Vector3, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
@@ -27,13 +27,15 @@ pub struct Rig<T: Real, P = AnyPath<T>> {
 enum Law<T: Real, P> {
     Follow(Supervisor<T, Follow<T, P>, Actuators<T>>),
     /// With the circle's radius (m), p3 (m) and rate (rad/s).
-    Track(Supervisor<T, Track<T>, Actuators<T>>, [T; 3]),
+    #[cfg(feature = "tracking")]
+    Track(Supervisor<T, controller::Track<T>, Actuators<T>>, [T; 3]),
 }
 
 macro_rules! either {
     ($law:expr, $supervisor:ident => $value:expr) => {
         match $law {
             Law::Follow($supervisor) => $value,
+            #[cfg(feature = "tracking")]
             Law::Track($supervisor, _) => $value,
         }
     };
@@ -100,15 +102,29 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     pub fn on(path: P, parameters: &Parameters<T>) -> Result<Self, SetupError<T>> {
         let (vehicle, sampling) = (parameters.vehicle()?, parameters.sampling());
         let law = if parameters.is_on(parameter!("CTL_LAW")) {
-            let tracker = Tracker::new(vehicle, parameters.track_gains(), sampling)?;
-            let [radius, p3, rate] = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
-            Law::Track(supervised(tracker, parameters)?, [radius, p3, rate].map(|number| parameters.get(number)))
+            Self::tracking(vehicle, sampling, parameters)?
         } else {
             let follower = Follower::new(vehicle, path, parameters.gains(), sampling)?;
             Law::Follow(supervised(follower, parameters)?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
         Ok(Self { law, last, time_constants: setpoint::time_constants(parameters) })
+    }
+
+    #[cfg(feature = "tracking")]
+    fn tracking(
+        vehicle: Vehicle<T>,
+        sampling: Sampling<T>,
+        parameters: &Parameters<T>,
+    ) -> Result<Law<T, P>, SetupError<T>> {
+        let tracker = controller::Tracker::new(vehicle, parameters.track_gains(), sampling)?;
+        let numbers = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
+        Ok(Law::Track(supervised(tracker, parameters)?, numbers.map(|number| parameters.get(number))))
+    }
+
+    #[cfg(not(feature = "tracking"))]
+    fn tracking(_: Vehicle<T>, _: Sampling<T>, _: &Parameters<T>) -> Result<Law<T, P>, SetupError<T>> {
+        Err(controller::OutOfRange { field: "CTL_LAW", value: T::one(), min: T::zero(), max: T::zero() }.into())
     }
 
     /// Starts on the path, from a stated ζ and with the integrals at zero.
@@ -140,9 +156,12 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[inline]
     pub fn step<'a>(&mut self, measured: impl Into<Measured<'a, T>>, request: Request, phase: T) -> &Output<T> {
         let measured = measured.into();
+        #[cfg(feature = "tracking")]
         if let Law::Track(supervisor, [radius, p3, rate]) = &mut self.law {
-            supervisor.law_mut().set_reference(&Reference::circle(*radius, *p3, *rate, phase));
+            supervisor.law_mut().set_reference(&controller::Reference::circle(*radius, *p3, *rate, phase));
         }
+        #[cfg(not(feature = "tracking"))]
+        let _ = phase;
         self.last = either!(&mut self.law, supervisor => {
             let controller::Output { command, mode, fault, warning } = supervisor.step(measured, request);
             let limited = supervisor.solution().is_some() && supervisor.sampler().is_limited();
@@ -209,6 +228,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     pub fn integral(&self) -> [T; 3] {
         match &self.law {
             Law::Follow(supervisor) => *supervisor.law().integral(),
+            #[cfg(feature = "tracking")]
             Law::Track(..) => [T::zero(); 3],
         }
     }
@@ -233,6 +253,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
                 let xi = &solution.xi;
                 LawNumbers::new(solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4])
             }),
+            #[cfg(feature = "tracking")]
             Law::Track(supervisor, _) => supervisor.solution().map(|solution| {
                 let [p1, p2, p3] = &solution.xi.position;
                 LawNumbers::new(solution, [p1, p2, p3, &solution.xi.yaw])

@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Context, Result, ensure};
 use sha2::{Digest, Sha256};
 
-use crate::object::{self, Machine};
+use crate::object::{self, Extent, Machine};
 use crate::sbom::{self, Product};
 use crate::toolchain::{Toolchain, root};
 
@@ -29,7 +29,7 @@ pub fn run() -> Result<()> {
     if dist.exists() {
         std::fs::remove_dir_all(&dist).with_context(|| format!("cannot empty {}", dist.display()))?;
     }
-    object::run(&[Machine::Host, Machine::CortexM4f, Machine::CortexM7])?;
+    object::run(&[Machine::Host, Machine::CortexM4f, Machine::CortexM7], &[Extent::Whole, Extent::Lean])?;
     wheel(&dist)?;
     firmware(&dist.join("firmware"))?;
 
@@ -56,7 +56,8 @@ pub fn reproduce(machines: &[Machine]) -> Result<()> {
     let scratch = root().join("target/reproduce");
     for &machine in machines {
         let builds = ["first", "second"].map(|name| scratch.join(name));
-        let objects = builds.each_ref().map(|folder| object::build(machine, folder, &folder.join("out")));
+        let objects =
+            builds.each_ref().map(|folder| object::build(machine, Extent::Whole, folder, &folder.join("out")));
         let [first, second] = objects;
         let [first, second] = [first?, second?].map(|path| std::fs::read(&path).map(|bytes| hex(&bytes)));
         let (first, second) = (first?, second?);

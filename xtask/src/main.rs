@@ -42,8 +42,11 @@ enum Command {
     Simulator,
     /// Builds the C interface as one relocatable object, into dist/.
     #[command(after_help = "Needs binutils for the machine (Debian: binutils-arm-none-eabi).\n\n\
-        Examples:\n  cargo xtask object\n  cargo xtask object host cortex-m7")]
+        Examples:\n  cargo xtask object\n  cargo xtask object host cortex-m7\n  cargo xtask object --lean cortex-m4f")]
     Object {
+        /// Leave out all curves but the circle, the tracking law, and what parameters mean in words.
+        #[arg(long)]
+        lean: bool,
         /// What for.
         #[arg(default_values = ["host", "cortex-m4f", "cortex-m7"])]
         machines: Vec<object::Machine>,
@@ -73,7 +76,9 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Target { json, refresh } => target::run(json, refresh),
         Command::Simulator => simulator::run(),
-        Command::Object { machines } => object::run(&machines),
+        Command::Object { lean, machines } => {
+            object::run(&machines, &[if lean { object::Extent::Lean } else { object::Extent::Whole }])
+        }
         Command::Dist => dist::run(),
         Command::Reproduce { machines } => dist::reproduce(&machines),
         Command::Thumb { arguments } => {

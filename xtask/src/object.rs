@@ -43,9 +43,27 @@ const MEMORY: [&str; 6] = ["memcpy", "memmove", "memset", "memcmp", "memclr", "b
 /// What the panic handler calls.
 const PANIC: &str = "slung_a_panic_is_reachable";
 
+/// How much is in an object.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// All of the interface.
+    Whole,
+    /// The path-following law on the circle and on routes, and the estimator.
+    Lean,
+}
+
+impl Extent {
+    const fn file(self) -> &'static str {
+        match self {
+            Self::Whole => "slung.o",
+            Self::Lean => "slung-lean.o",
+        }
+    }
+}
+
 /// Builds the objects for `machines` into dist/, with header, CMake and pkg-config files, and says
 /// what they take.
-pub fn run(machines: &[Machine]) -> Result<()> {
+pub fn run(machines: &[Machine], extents: &[Extent]) -> Result<()> {
     let dist = root().join("dist");
     let include = dist.join("include");
     std::fs::create_dir_all(&include).with_context(|| format!("cannot make {}", include.display()))?;
@@ -56,9 +74,10 @@ pub fn run(machines: &[Machine]) -> Result<()> {
     ] {
         std::fs::copy(root().join(from), dist.join(to)).with_context(|| format!("cannot copy {from} to dist/"))?;
     }
-    for &machine in machines {
+    for (&machine, &extent) in machines.iter().flat_map(|machine| extents.iter().map(move |extent| (machine, extent)))
+    {
         let target = root().join("capi/object/target").join(machine.name());
-        let object = build(machine, &target, &dist.join(machine.name()))?;
+        let object = build(machine, extent, &target, &dist.join(machine.name()))?;
         let (text, data) = inspect(&object)?;
         println!("{}: {text} B of code and constants, {data} B of data", object.strip_prefix(root())?.display());
     }
@@ -66,17 +85,19 @@ pub fn run(machines: &[Machine]) -> Result<()> {
 }
 
 /// Builds the object for `machine` by cargo's folder `target` into `folder`, and says where it is.
-pub fn build(machine: Machine, target: &Path, folder: &Path) -> Result<PathBuf> {
+pub fn build(machine: Machine, extent: Extent, target: &Path, folder: &Path) -> Result<PathBuf> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let object = folder.join("slung.o");
-    prelink(machine, &archive(machine, target)?, &object)?;
+    let object = folder.join(extent.file());
+    prelink(machine, &archive(machine, extent, target)?, &object)?;
     Ok(object)
 }
 
 /// Builds the static library.
-fn archive(machine: Machine, target: &Path) -> Result<PathBuf> {
+fn archive(machine: Machine, extent: Extent, target: &Path) -> Result<PathBuf> {
     let folder = root().join("capi/object");
-    let arguments = ["build", "--release", "--quiet"].map(str::to_owned);
+    let features = (extent == Extent::Lean).then_some("--no-default-features");
+    let arguments: Vec<String> =
+        ["build", "--release", "--quiet"].into_iter().chain(features).map(str::to_owned).collect();
     let (mut cargo, triple) = match machine {
         Machine::Host => {
             let mut cargo = Command::new("cargo");
