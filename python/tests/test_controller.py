@@ -115,6 +115,15 @@ def test_an_inner_loop_is_told_rates_in_its_own_axes():
     assert turned.thrust == output.thrust
 
 
+def test_a_late_inner_loop_is_told_where_the_rate_will_be():
+    rig = slung.Rig(slung.Parameters(CTL_PERIOD=0.01, CTL_LATENCY=0.02, INN_T_3=0.6))
+    rig.start(hovering((5.0, 0.5, -10.0)))
+    output = rig.step(slung.State((5.0, 0.5, -10.0), body_rate=(0.1, 0.0, 0.2)))
+    ahead = output.body_rate_setpoint - (0.1, 0.0, 0.2)
+    # Two numbers of single precision subtracted.
+    np.testing.assert_allclose(ahead, output.angular_acceleration * (0.05, 0.05, 0.62), rtol=1e-5, atol=1e-7)
+
+
 def test_a_function_makes_the_same_path_as_its_kind():
     """An ellipse by its formulas and as the library has it: the law's answers agree."""
 

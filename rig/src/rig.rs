@@ -17,7 +17,7 @@ use crate::setpoint;
 pub struct Rig<T: Real, P = AnyPath<T>> {
     law: Law<T, P>,
     last: Output<T>,
-    /// Of an inner rate loop about each body axis, s.
+    /// Of an inner rate loop about each body axis, with the latency to it, s.
     time_constants: Vector3<T>,
 }
 

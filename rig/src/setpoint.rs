@@ -2,12 +2,15 @@
 //! between this law and the rotors.
 //!
 //! The law's torque τ is to give the angular acceleration ω̇ = J⁻¹ (τ + τ_d − ω × J ω). A
-//! rate loop that reaches its setpoint with the time constant T_i about axis i gives it if asked
-//! for
+//! rate loop that reaches its setpoint with the time constant T_i about axis i gives it if asked,
+//! the known latency δ from now, for
 //!
 //! ```text
-//! ω_sp,i = ω_i + T_i ω̇_i
+//! ω_sp,i = ω_i + (δ + T_i) ω̇_i
 //! ```
+//!
+//! since ω_i has by then gone on by δ ω̇_i. The lag of the motors below such a loop is the loop's
+//! own to make good: the law is not to be told of it.
 //!
 //! Each axis has its own time constant: yaw, by the rotors' drag, is mostly many times slower than
 //! roll and pitch.
@@ -17,7 +20,7 @@ use controller::{Real, State, Vector3, dynamics::Model};
 use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::rig::Rig;
-use crate::run;
+use crate::{parameter, run};
 
 const TIME_CONSTANT: (f64, f64) = (0.0, 5.0);
 
@@ -36,8 +39,10 @@ pub struct RateSetpoint<T> {
     pub body_rate: Vector3<T>,
 }
 
+/// δ + T_i, s.
 pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> {
-    Vector3::from(parameters.run(run!("INN_T_1" to "INN_T_3")))
+    let latency = parameters.get(parameter!("CTL_LATENCY"));
+    Vector3::from(parameters.run(run!("INN_T_1" to "INN_T_3"))).map(|time| latency + time)
 }
 
 impl<T: Real, P: controller::Path<T>> Rig<T, P> {
