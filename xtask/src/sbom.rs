@@ -158,7 +158,10 @@ impl Bill {
 /// The licences of all that is in the products, each text once.
 pub fn notices(bills: &[Bill]) -> Result<String> {
     let mut texts: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-    let mut lists = String::from("What is in the files beside this one that others wrote, and on which terms.\n");
+    let mut lists = String::from(
+        "What is in the files beside this one that others wrote, and on which terms. The source of each is at\n\
+         https://crates.io/crates/NAME/VERSION.\n",
+    );
     for bill in bills {
         writeln!(lists, "\n{}:", bill.name)?;
         for component in &bill.components {
@@ -188,4 +191,32 @@ pub fn notices(bills: &[Bill]) -> Result<String> {
         writeln!(lists, "\n{}\n{}\n\n{text}", "-".repeat(100), names.join(", "))?;
     }
     Ok(lists)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIMULATOR: Product = Product { name: "hil-sim", manifest: "Cargo.toml", package: "hil-sim" };
+
+    #[test]
+    fn a_bill_holds_what_is_linked_and_nothing_else() {
+        let bill = bill(&SIMULATOR).unwrap();
+        let of = |name: &str| bill.components.iter().find(|component| component.name == name);
+        assert_eq!(of("serialport").unwrap().licence, "MPL-2.0");
+        assert!(of("serialport").unwrap().checksum.as_ref().is_some_and(|checksum| checksum.len() == 64));
+        // Of tests alone, and ours.
+        assert!(of("proptest").is_none() && of("controller").is_none());
+        assert!(bill.components.iter().all(|component| component.licence != "NOASSERTION"), "{:?}", bill.components);
+        let json = bill.json();
+        assert_eq!(json["components"].as_array().unwrap().len(), bill.components.len());
+        assert_eq!(json["specVersion"], "1.6");
+    }
+
+    #[test]
+    fn the_notices_hold_each_licence_once() {
+        let notices = notices(&[bill(&SIMULATOR).unwrap(), bill(&SIMULATOR).unwrap()]).unwrap();
+        assert!(notices.contains("  serialport "));
+        assert_eq!(notices.matches("https://mozilla.org/MPL/2.0/").count(), 1);
+    }
 }
