@@ -75,14 +75,13 @@ fn fly(setting: &Setting) -> Vec<Sample> {
             let state = body.state();
             let solution = follower.step(&state.cast());
             let disturbance = follower.disturbance();
-            let implied = disturbance.implied_payload_mass(&vehicle, &state.rod.cast(), solution.margins.lambda);
             let sample = Sample {
                 t,
                 distance: distance_to_circle(state.position.into(), RADIUS, P3),
                 position: state.position,
                 rod: state.rod,
                 estimate: disturbance.cast(),
-                implied_mass: f64::from(implied),
+                implied_mass: f64::from(follower.sampler().payload_mass()),
             };
             let Command { thrust, torque } = solution.command;
             let command = Command { thrust: f64::from(thrust), torque: torque.cast() };

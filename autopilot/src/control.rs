@@ -9,14 +9,14 @@
 //!
 //! Where nothing was asked for, or to idle, or where the state says that it stands, the first good
 //! state finds a vehicle on the ground, whose rotors turn at their least thrust. Where more was, it
-//! finds one in flight, which is taken over from hover thrust and does that. From there on every control period steps the supervisor
-//! (`controller::Supervisor`, which has the modes' table) on the newest state: a missing one is
-//! passed on as absent; the supervisor coasts, then sinks or cuts. What the pilot asks for
-//! ([`Autopilot::request`]) lasts until disarming.
+//! finds one in flight, which is taken over from hover thrust and does that. From there on every
+//! control period steps the supervisor (`controller::Supervisor`, which has the modes' table) on the
+//! newest state: a missing one is passed on as absent; the supervisor goes on by its model, then
+//! sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
 
 use controller::{Actuation as _, Command, Fault, Margin, Mode, Request, State};
 use link::dialect::{
-    LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault,
+    LOAD_COMMAND_DATA, LOAD_COUNTERS_DATA, LOAD_STATE_DATA, LOAD_TELEMETRY_DATA, LoadAction, LoadFault, LoadSeen,
     MavLandedState,
 };
 
@@ -83,6 +83,8 @@ pub enum ArmRefused {
     Weak(f32),
     /// There has been no good state just now.
     NoState,
+    /// Good states come this far apart, s, which is longer than `POL_COAST`, s.
+    Slow(f32, f32),
     /// A kill switch is on.
     Killed,
     /// This is lost.
@@ -102,6 +104,7 @@ impl core::fmt::Display for ArmRefused {
             Self::Setup(error) => error.fmt(f),
             Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),
+            Self::Slow(apart, most) => write!(f, "not armed: states {apart:.2} s apart, POL_COAST {most}"),
             Self::Killed => f.write_str("not armed: the kill switch is on"),
             Self::Lost(Loss::Station) => f.write_str("not armed: ground station lost"),
             Self::Lost(Loss::Stick) => f.write_str("not armed: stick or radio lost"),
@@ -132,6 +135,8 @@ pub enum Absence {
     Missing,
     /// What came was from another time.
     Stale,
+    /// What came was the last one again, to the last bit, which in flight no measurement is.
+    Frozen,
     /// It was no state.
     Bad,
 }
@@ -165,13 +170,18 @@ pub struct Autopilot {
     /// The vehicle is known to stand on the ground.
     stands: bool,
     epoch: Epoch,
-    /// A state from another time has come since the last control period.
-    stale: bool,
+    /// The last state that has come, and what was wrong with those since the last control period.
+    newest: Option<State<f32>>,
+    refused: Option<Absence>,
     /// What the last control period lacked.
     absence: Option<Absence>,
+    /// The fault that stands: not one of a state that the model has stood in for.
+    fault: Option<Fault>,
     /// Time since the last good state, and in which rotors turned without one, s.
     since_state_s: f32,
     blind_s: f32,
+    /// Times without a state between the last three good ones, s.
+    apart_s: [f32; 2],
     failsafe: Failsafe,
     /// The pilot's kill switch is on; and for how many steps the board's has been, up to
     /// [`PRESSED`].
@@ -205,10 +215,13 @@ impl Autopilot {
             navigates: false,
             stands: false,
             epoch: Epoch::default(),
-            stale: false,
+            newest: None,
+            refused: None,
             absence: None,
+            fault: None,
             since_state_s: f32::INFINITY,
             blind_s: 0.0,
+            apart_s: [0.0; 2],
             failsafe: Failsafe::default(),
             kill: false,
             kill_pin: 0,
@@ -255,7 +268,7 @@ impl Autopilot {
     /// Why it is not doing what was asked for: the last fault since something else was.
     #[must_use]
     pub fn fault(&self) -> Option<Fault> {
-        self.rig.as_ref().and_then(|rig| rig.output().fault)
+        self.fault
     }
 
     /// Whether rotors may turn.
@@ -419,9 +432,16 @@ impl Autopilot {
             if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
                 return Err(ArmRefused::NoState);
             }
+            let most = self.settings.rig().get(parameter!("POL_COAST"));
+            // One gap is no rate.
+            let apart_s = self.apart_s[0].min(self.apart_s[1]);
+            if self.drive() == Drive::Flight && apart_s > most {
+                return Err(ArmRefused::Slow(apart_s, most));
+            }
             self.rig = Some(rig);
             self.inbox = None;
             self.epoch = Epoch::default();
+            self.newest = None;
             self.blind_s = 0.0;
             self.last = None;
             self.until_telemetry = 0;
@@ -433,20 +453,33 @@ impl Autopilot {
     pub fn disarm(&mut self) {
         self.stands &= !self.is_flying();
         self.rig = None;
+        self.fault = None;
         self.request = Request::Idle;
         self.last = None;
     }
 
     /// A state for the coming control period: flight and real time. One from another time than the
     /// last, earlier or seconds later, is refused; but for the third in a row that agree on
-    /// another, which is that of a clock that has restarted.
+    /// another, which is that of a clock that has restarted. In flight so is one that is the last
+    /// again: an estimator that has stopped.
     pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
-        if self.epoch.accept(frame.time_usec) {
-            self.inbox = Some(frame.clone());
-        } else {
+        if !self.epoch.accept(frame.time_usec) {
             self.counters.refused = self.counters.refused.wrapping_add(1);
-            self.stale = true;
+            self.refused = Some(Absence::Stale);
+            return;
         }
+        let mut frame = frame.clone();
+        let state = Seen::of(&frame).state;
+        if state.is_some() {
+            let is_again = self.newest == state && self.is_flying();
+            self.newest = state;
+            if is_again {
+                frame.seen |= LoadSeen::LOAD_SEEN_NO_LOAD;
+                self.counters.refused = self.counters.refused.wrapping_add(1);
+                self.refused = Some(Absence::Frozen);
+            }
+        }
+        self.inbox = Some(frame);
     }
 
     /// A control period by the timer: flight and real time.
@@ -569,14 +602,17 @@ impl Autopilot {
         let seen = if self.drive() == Drive::Lockstep { seen } else { seen.or(&self.navigation) };
         let good = seen.good();
         self.navigates = seen.uav().is_some();
-        let is_stale = core::mem::take(&mut self.stale);
+        let refused = self.refused.take();
         self.absence = match good {
             Some(_) => None,
             None if seen.is_bad => Some(Absence::Bad),
-            None if is_stale => Some(Absence::Stale),
-            None => Some(Absence::Missing),
+            None => refused.or(Some(Absence::Missing)),
         };
         let period_s = self.period_s();
+        if good.is_some() {
+            let apart_s = if self.since_state_s.is_finite() { self.since_state_s } else { 0.0 };
+            self.apart_s = [self.apart_s[1], apart_s];
+        }
         self.since_state_s = if good.is_some() { 0.0 } else { self.since_state_s + period_s };
         let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
         match self.absence {
@@ -590,7 +626,7 @@ impl Autopilot {
                 faults |= LoadFault::LOAD_FAULT_NO_STATE;
             }
         }
-        faults.set(LoadFault::LOAD_FAULT_STALE_STATE, is_stale);
+        faults.set(LoadFault::LOAD_FAULT_STALE_STATE, refused.is_some());
         if let (Some(frame), Some(state)) = (frame, good) {
             if frame.action == LoadAction::LOAD_ACTION_START {
                 self.request = Request::Follow;
@@ -606,6 +642,11 @@ impl Autopilot {
             measured.uav = None;
         }
         let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
+        let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen));
+        let is_in_flight = !matches!(mode, Mode::Off | Mode::Idle | Mode::Fault);
+        if !(is_away && is_in_flight && self.since_state_s <= self.settings.rig().get(parameter!("POL_COAST"))) {
+            self.fault = fault;
+        }
         let has_fallen_back = is_flying(before) && self.request == Request::Follow && !is_flying(mode);
         self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
 

@@ -71,6 +71,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
     let fault = match (fault, absence) {
         (Some(Fault::State(_) | Fault::NoState), None) if mode == Mode::Idle => "",
         (Some(Fault::NoState), Some(Absence::Stale)) => "stale states",
+        (Some(Fault::NoState), Some(Absence::Frozen)) => "frozen states",
         (Some(Fault::NoState), _) => "no state",
         (Some(Fault::State(channel)), _) => match channel {
             Channel::Position => "bad position",

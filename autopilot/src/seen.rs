@@ -25,7 +25,8 @@ pub struct Seen {
 impl Seen {
     /// In a frame.
     pub fn of(frame: &LOAD_STATE_DATA) -> Self {
-        let state = (!frame.seen.contains(LoadSeen::LOAD_SEEN_NO_LOAD)).then(|| link::state_of(frame));
+        let is_none = frame.seen.contains(LoadSeen::LOAD_SEEN_NO_LOAD) || frame.position.iter().all(|p| p.is_nan());
+        let state = (!is_none).then(|| link::state_of(frame));
         let is_bad = state.is_some_and(|state| state.check().is_err());
         Self { state, is_bad, uav: link::uav_of(frame), specific_force: link::specific_force_of(frame) }
     }

@@ -160,6 +160,76 @@ def observers():
         close(error, [0.0] * n, 1e-9, "it converges")
 
 
+@covers("11.9")
+def lead():
+    """A lag under a led command is the shorter lag under the command itself."""
+    for lag in (0.02, 0.05, 0.1, 0.3):
+        short = min(lag, max(lag / 5, 0.01))
+        led, plain, wanted, h = 4.0, 4.0, 9.0, 1e-5
+        for _ in range(int(0.05 / h)):
+            led += (led + (wanted - led) * lag / short - led) / lag * h
+            plain += (wanted - plain) / short * h
+        close(led, plain, 1e-9, f"(11.9), {lag} s")
+
+
+@covers("11.10", "11.11")
+def through_flight():
+    """Through 25 commands of 2 ms in 8 steps, and carried a period at a time: second order in the step's length."""
+    car = TABLE_I
+    x = State.of([5.4, 0.0, -9.8] + [0.05, -0.05, 0.02, 0.03, 0.1] + [0.0, 0.6] + [0.0] * 6)
+    h, count = 0.002, 24
+    commands = [(car.m * car.g + 0.5 * math.sin(0.3 * i), Vec(0.02 * math.cos(i / 5), -0.03, 0.01)) for i in range(count)]
+    exact = x
+    for thrust, torque in commands:
+        for _ in range(4):
+            exact = rigid(car, exact, thrust, torque, h / 4)
+
+    def steps(n):
+        at, size = x, count // n
+        for i in range(n):
+            part = commands[i * size : (i + 1) * size]
+            thrust = sum(t for t, _ in part) / size
+            torque = Vec(*(sum(tau[k] for _, tau in part) / size for k in range(3)))
+            at = predict(car, at, thrust, torque, size * h)
+            q = at.q * (1 / at.q.norm())
+            at = State(at.p, at.v, q, at.w - q * q.dot(at.w), at.b, at.omega)
+        return [(at.p - exact.p).norm(), (at.q - exact.q).norm(), (at.b[2] - exact.b[2]).norm()]
+
+    one, eight, each = steps(1), steps(8), steps(count)
+    # The rod's error is small whatever the steps: its acceleration hardly changes.
+    assert all(each[i] < eight[i] < one[i] for i in (0, 2)), f"(11.10), (11.11): {one} {eight} {each}"
+    assert max(eight) < 2e-6, f"(11.10): {eight}"
+
+
+@covers("12.8")
+def bounce():
+    """The frequency at which two bodies on a spring part and meet, from their equations."""
+    m_l, m_q, k = 0.5, 2.5, 98.1 / 2.0
+    omega = math.sqrt(k * (1 / m_l + 1 / m_q))
+    stretch, parting, h = 0.01, 0.0, 1e-5
+    for _ in range(int(2 * math.pi / omega / h)):
+        parting += -k * stretch * (1 / m_l + 1 / m_q) * h
+        stretch += parting * h
+    close(stretch, 0.01, 1e-6, "(12.8)")
+
+
+@covers("12.7")
+def weighed():
+    """The share that a wrong mass implies in any motion, and a wrong thrust where the rod does not turn."""
+    car = TABLE_I
+    for mass, scale in ((1.5, 1.0), (0.2, 1.0), (0.5, 1.2), (0.5, 0.85)):
+        real = Vehicle(mass, car.m_q, *car.j, car.length, car.g)
+        for _ in range(5):
+            x = State.of(random_x())
+            if scale != 1.0:
+                x = State(x.p, x.v, x.q, NOTHING, x.b, x.omega)
+            thrust = real.m * real.g
+            v_dot, _, _, _ = model(real, x, thrust * scale, NOTHING)
+            told, _, _, lam = model(car, x, thrust, NOTHING)
+            share = lam / (lam + (v_dot - told).dot(x.q))
+            close(share, real.m / car.m / scale, 1e-12, "(12.7)")
+
+
 @covers("12.6")
 def implied_mass():
     """A payload of 0.8 kg where 0.5 is told, hanging at rest: d is what the told model lacks."""

@@ -141,3 +141,39 @@ pub fn turn<T: Real>(
     ]);
     (turned, body_rate)
 }
+
+/// What a state and a disturbance that grows become in `dt` under a held `command`: the step of
+/// [`advance`] and [`turn`], with the rod and the attitude brought back to unit length and right
+/// angles.
+#[inline(never)]
+pub fn pass<T: Real>(
+    vehicle: &Vehicle<T>,
+    state: &State<T>,
+    disturbance: &Disturbance<T>,
+    command: &Command<T>,
+    dt: T,
+) -> (State<T>, Disturbance<T>) {
+    let Acceleration { payload, rod, body } = Model::at(vehicle, state).acceleration(command, disturbance);
+    let (position, velocity) = advance(&state.position, &state.velocity, &payload, dt);
+    let (q, w) = advance(&state.rod, &state.rod_rate, &rod, dt);
+    let (q, w) = across((unit(&q), w));
+    let (attitude, body_rate) = turn(&state.attitude, &state.body_rate, &body, dt);
+    let state = State { position, velocity, rod: q, rod_rate: w, attitude: right_angled(&attitude), body_rate };
+    let mut disturbance = *disturbance;
+    disturbance.payload += disturbance.payload_rate * dt;
+    disturbance.rod += disturbance.rod_rate * dt;
+    disturbance.rod -= q * q.dot(&disturbance.rod);
+    (state, disturbance)
+}
+
+fn unit<T: Real>(v: &Vector3<T>) -> Vector3<T> {
+    v / v.dot(v).sqrt()
+}
+
+/// The rotation near `attitude`, whose third column keeps its direction.
+fn right_angled<T: Real>(attitude: &Matrix3<T>) -> Matrix3<T> {
+    let (b1, b3): (Vector3<T>, Vector3<T>) = (attitude.column(0).into(), attitude.column(2).into());
+    let b3 = unit(&b3);
+    let b1 = unit(&(b1 - b3 * b3.dot(&b1)));
+    Matrix3::from_columns(&[b1, b3.cross(&b1), b3])
+}

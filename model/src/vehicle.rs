@@ -130,6 +130,19 @@ impl<T: Real> Vehicle<T> {
         })
     }
 
+    /// Takes all mass for `share` of what it is `told`, on the same UAV: what M stands in moves,
+    /// [`params`](Self::params) stay. Along the rod a thrust of 1/`share` of what was told looks the
+    /// same.
+    #[inline(always)]
+    pub fn weigh(&mut self, told: &Self, share: T) {
+        let inverse = T::one() / share;
+        self.coupling = told.coupling * share;
+        self.per_total_mass = told.per_total_mass * inverse;
+        self.inverse_coupling = told.inverse_coupling * inverse;
+        self.total_mass = told.total_mass * share;
+        self.hover_thrust = told.hover_thrust * share;
+    }
+
     /// The parameters it was made from.
     pub fn params(&self) -> &VehicleParams<T> {
         &self.params

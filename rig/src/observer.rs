@@ -14,6 +14,18 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
         "Bandwidth of the observer of the force on the payload; 0 is off.",
     ),
     Entry::of(
+        "OBS_W_ALONG",
+        ranges::ALONG_BANDWIDTH,
+        "rad/s",
+        "Bandwidth along the cable of the observer of the force on the payload; 0 is OBS_W_LOAD.",
+    ),
+    Entry::of(
+        "OBS_EA",
+        ranges::CABLE_STIFFNESS,
+        "N",
+        "Stiffness EA of the cable, which bounds the bandwidth along it; 0 is a cable that does not stretch.",
+    ),
+    Entry::of(
         "OBS_W_ROD",
         ranges::ROD_BANDWIDTH,
         "rad/s",
@@ -39,8 +51,25 @@ impl<T: Real> Parameters<T> {
     /// The disturbance observers.
     #[must_use]
     pub fn observer(&self) -> ObserverParams<T> {
-        let [payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound] =
-            self.run(run!("OBS_W_LOAD" to "OBS_MAX_TAU"));
-        ObserverParams { payload_bandwidth, rod_bandwidth, torque_bandwidth, payload_bound, rod_bound, torque_bound }
+        let [
+            payload_bandwidth,
+            along_bandwidth,
+            cable_stiffness,
+            rod_bandwidth,
+            torque_bandwidth,
+            payload_bound,
+            rod_bound,
+            torque_bound,
+        ] = self.run(run!("OBS_W_LOAD" to "OBS_MAX_TAU"));
+        ObserverParams {
+            payload_bandwidth,
+            along_bandwidth,
+            cable_stiffness,
+            rod_bandwidth,
+            torque_bandwidth,
+            payload_bound,
+            rod_bound,
+            torque_bound,
+        }
     }
 }

@@ -233,13 +233,13 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         }
     }
 
-    /// The disturbances found up to the last sample.
+    /// The disturbances found up to the last sample, beyond the vehicle as it was told.
     #[must_use]
-    pub fn disturbance(&self) -> &Disturbance<T> {
+    pub fn disturbance(&self) -> Disturbance<T> {
         either!(&self.law, supervisor => supervisor.disturbance())
     }
 
-    /// The vehicle as the law knows it.
+    /// The vehicle as it was told.
     #[must_use]
     pub fn vehicle(&self) -> &Vehicle<T> {
         either!(&self.law, supervisor => supervisor.sampler().vehicle())

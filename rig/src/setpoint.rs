@@ -54,7 +54,7 @@ impl<T: Real, P: controller::Path<T>> Rig<T, P> {
             return RateSetpoint { angular_acceleration: Vector3::zeros(), body_rate: Vector3::zeros() };
         };
         let command = &self.output().command;
-        let acceleration = Model::at(self.vehicle(), state).acceleration(command, self.disturbance()).body;
+        let acceleration = Model::at(self.vehicle(), state).acceleration(command, &self.disturbance()).body;
         RateSetpoint {
             angular_acceleration: acceleration,
             body_rate: state.body_rate + acceleration.component_mul(self.time_constants()),

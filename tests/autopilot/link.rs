@@ -202,8 +202,8 @@ fn stamped(stamps: impl IntoIterator<Item = u64>) -> (Mode, u32) {
     assert_eq!(autopilot.drive(), Drive::RealTime);
     autopilot.request(Request::Hold);
     arm(&mut autopilot);
-    for time_usec in stamps {
-        autopilot.receive(&LOAD_STATE_DATA { time_usec, ..frame(1) });
+    for (sequence, time_usec) in (1..).zip(stamps) {
+        autopilot.receive(&LOAD_STATE_DATA { time_usec, ..frame(sequence) });
         autopilot.tick();
     }
     (autopilot.mode(), autopilot.counters().refused)
@@ -224,6 +224,45 @@ fn a_clock_that_restarts_is_believed_soon_and_a_stray_stamp_never() {
     // A stamp again and again is one state.
     let frozen = stamped(every(10_000_000, 10).chain([10_020_000; 100]));
     assert_eq!(frozen, (Mode::Fault, 99));
+}
+
+#[test]
+fn an_estimator_that_has_stopped_gives_no_states() {
+    let mut station = Station::new(driven(0.0));
+    station.autopilot.request(Request::Hold);
+    arm(&mut station.autopilot);
+    fly(&mut station.autopilot, 1);
+    station.news();
+    let mut again = |sequence: u32| {
+        let frame = frame(2 * sequence);
+        station.autopilot.receive(&frame);
+        station.autopilot.tick();
+        (station.autopilot.mode(), station.news())
+    };
+    // The first of them is new; the last two tenths of a second are none, of which the model carries
+    // one.
+    for sequence in 1..50 {
+        assert_eq!(again(sequence), (Mode::Hold, vec![]), "{sequence}");
+    }
+    let said: Vec<_> = (50..100).flat_map(|sequence| again(sequence).1).collect();
+    assert_eq!(said, ["fault: frozen states"]);
+    assert_eq!(again(100).0, Mode::Fault);
+}
+
+#[test]
+fn states_slower_than_the_model_carries_are_refused_with_the_limit() {
+    for (every, expected) in [(50, None), (60, Some("not armed: states 0.12 s apart, POL_COAST 0.1"))] {
+        let mut station = Station::new(driven(0.0));
+        for sequence in 1..4 {
+            fly(&mut station.autopilot, sequence);
+            for _ in 0..every {
+                station.autopilot.tick();
+            }
+        }
+        fly(&mut station.autopilot, 4);
+        let (result, said) = station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+        assert_eq!((result == ACCEPTED, said.first().map(String::as_str)), (expected.is_none(), expected), "{every}");
+    }
 }
 
 #[test]

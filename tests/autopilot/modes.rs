@@ -176,7 +176,7 @@ fn a_policy_that_does_not_resume_waits_to_be_asked_again() {
     flight.until(Mode::Follow, 30.0);
 }
 
-/// States that are missing, stale, or no numbers: coasted over while they are few, then sunk from,
+/// States that are missing, stale, or no numbers: carried over while they are few, then sunk from,
 /// and back to the path once they return.
 #[test]
 fn failing_states_lead_to_fault_and_back() {

@@ -11,9 +11,11 @@ pub fn start() -> State<f32> {
     State::at_rest(Vector3::new(6.0, 0.0, -10.0))
 }
 
-/// The `sequence`-th state, every 2 ms.
+/// The `sequence`-th state, every 2 ms; no two in a row are the same, as no measurements are.
 pub fn frame_of(state: &State<f32>, sequence: u32) -> LOAD_STATE_DATA {
-    LOAD_STATE_DATA { time_usec: 2_000 * u64::from(sequence) + 1, sequence, ..state_frame(state) }
+    let mut frame = state_frame(state);
+    frame.velocity[0] += if sequence.is_multiple_of(2) { 1e-6 } else { 0.0 };
+    LOAD_STATE_DATA { time_usec: 2_000 * u64::from(sequence) + 1, sequence, ..frame }
 }
 
 pub fn frame(sequence: u32) -> LOAD_STATE_DATA {

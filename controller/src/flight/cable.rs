@@ -39,16 +39,17 @@ pub(crate) struct Cable<T> {
 }
 
 impl<T: Real> Cable<T> {
-    pub(crate) fn new(vehicle: &Vehicle<T>, period: T) -> Self {
+    /// Pulling as the load's weight, observed with no more than the bandwidth `most`, rad/s.
+    pub(crate) fn new(vehicle: &Vehicle<T>, period: T, most: T) -> Self {
         let weight = vehicle.params().payload_mass * vehicle.params().gravity;
-        Self { period, pull: Pull::new(period), usual: weight, learning: T::zero(), slackening: T::zero() }
+        Self { period, pull: Pull::new(period, most), usual: weight, learning: T::zero(), slackening: T::zero() }
     }
 
     /// Taut at `state` under `thrust`, N.
     #[inline(never)]
     pub(crate) fn begin(&mut self, vehicle: &Vehicle<T>, state: &State<T>, thrust: T) {
         let params = vehicle.params();
-        *self = Self::new(vehicle, self.period);
+        (self.usual, self.learning, self.slackening) = (params.payload_mass * params.gravity, T::zero(), T::zero());
         let tension = -params.payload_mass * lambda(vehicle, state, thrust);
         let force = state.rod * (tension.max(T::zero()) / params.uav_mass);
         self.pull.start(&(state.velocity - state.rod_rate * params.rod_length), force);

@@ -112,7 +112,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         policy: Policy<T>,
     ) -> Result<Self, OutOfRange<T>> {
         let (law, sampler) = controller.into_parts();
-        let (vehicle, period) = (*sampler.vehicle(), sampler.period());
+        let (vehicle, period, most_along) = (*sampler.vehicle(), sampler.period(), sampler.most_along());
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
         Ok(Self {
@@ -126,7 +126,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             fault: None,
             is_by_law: false,
             hold: Hold::from(&vehicle, &Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
-            cable: Cable::new(&vehicle, period),
+            cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
             from: T::zero(),
@@ -161,8 +161,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         &self.sampler
     }
 
-    /// The disturbances found up to the last sample.
-    pub fn disturbance(&self) -> &Disturbance<T> {
+    /// The disturbances found up to the last sample, beyond the vehicle as it was told.
+    pub fn disturbance(&self) -> Disturbance<T> {
         self.sampler.disturbance()
     }
 
@@ -227,10 +227,35 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 Ok(()) => return self.with_load(state, uav, measured.specific_force),
             },
         };
-        match uav {
-            Some(uav) => self.without_load(fault, uav, measured.specific_force),
-            None => self.without_state(fault),
+        self.blind += self.sampler.period();
+        if let Some(output) = self.carried(fault, uav, measured.specific_force) {
+            return output;
         }
+        self.fault = Some(fault);
+        match uav {
+            Some(uav) => self.without_load(uav, measured.specific_force),
+            None => self.without_state(),
+        }
+    }
+
+    /// Whether the model can say what has become of the last state: not for long, and only with a
+    /// cable that pulls.
+    fn may_carry(&self) -> bool {
+        let is_flying = matches!(self.mode, Mode::Join | Mode::Follow | Mode::Hold | Mode::Land);
+        let is_taut = !self.cable.is_slack() && !self.landing.is_set_down();
+        is_flying && is_taut && self.blind <= self.policy.coast
+    }
+
+    /// A step on what the model makes of the last state. Its `fault` is this step's alone: states may
+    /// come at a lower rate than commands.
+    #[cold]
+    fn carried(&mut self, fault: Fault, uav: Option<&Uav<T>>, specific: Option<Vector3<T>>) -> Option<Output<T>> {
+        let state = self.may_carry().then(|| self.sampler.carry()).filter(|state| state.check().is_ok())?;
+        let velocity = self.now(&state, uav).velocity;
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
+        let output = self.fly(&state, uav);
+        Some(Output { fault: output.fault.or(Some(fault)), ..output })
     }
 
     /// A step on a good state.
@@ -242,9 +267,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             None => state.velocity - state.rod_rate * length,
         };
         if self.blind > T::zero() {
+            if !self.may_carry() {
+                self.sampler.resume(state);
+                self.cable.resume(&velocity);
+            }
             self.blind = T::zero();
-            self.sampler.resume(state);
-            self.cable.resume(&velocity);
         }
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
@@ -263,18 +290,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     /// A step on the UAV alone.
     #[cold]
-    fn without_load(&mut self, fault: Fault, uav: &Uav<T>, specific: Option<Vector3<T>>) -> Output<T> {
-        self.fault = Some(fault);
-        self.blind += self.sampler.period();
+    fn without_load(&mut self, uav: &Uav<T>, specific: Option<Vector3<T>>) -> Output<T> {
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &uav.velocity, &uav.attitude, thrust, specific);
         self.cable.watch(self.sampler.vehicle(), None, self.watching());
-        let is_by_law = matches!(self.mode, Mode::Join | Mode::Follow);
-        if is_by_law && self.blind <= self.policy.coast {
-            let command = self.sampler.coast();
-            return self.output(command, None);
-        }
-        if is_by_law {
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.enter_hold(uav, None);
         }
         self.change_mode(None, Some(uav));
@@ -298,7 +318,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn begin(&mut self, state: &State<T>, thrust: T) {
         self.cable.begin(self.sampler.vehicle(), state, thrust);
-        self.payload.begin();
+        self.payload.leave();
     }
 
     /// By the law, or by hold.
@@ -477,7 +497,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             Some(Fault::Margin(margin))
         } else if !solution.is_finite() {
             Some(Fault::NotFinite)
-        } else if self.payload.is_lost(self.law.solution().margins.lambda, self.along(ahead), self.sampler.period()) {
+        } else if self.payload.is_lost(self.sampler.weight(), self.sampler.period()) {
             Some(Fault::PayloadLost)
         } else {
             None
@@ -490,12 +510,6 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.is_by_law = true;
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
         self.output(command, warning)
-    }
-
-    /// d·q.
-    #[inline]
-    fn along(&self, ahead: &Ahead<T>) -> T {
-        self.sampler.disturbance().payload.dot(&ahead.state.rod)
     }
 
     /// Hold's command for when it acts, from the UAV and what is known of the rod now; it goes for
@@ -560,9 +574,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     /// A step without a good state.
     #[cold]
-    fn without_state(&mut self, fault: Fault) -> Output<T> {
-        self.fault = Some(fault);
-        self.blind += self.sampler.period();
+    fn without_state(&mut self) -> Output<T> {
         let command = match self.mode {
             Mode::Off => Command::zero(),
             Mode::Idle => Command::of_thrust(self.sampler.actuation().least_thrust()),

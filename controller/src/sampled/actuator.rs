@@ -98,28 +98,80 @@ pub const MAX_DELAY: usize = 31;
 /// A power of two, so that a count that wraps keeps its place.
 const SLOTS: usize = MAX_DELAY + 1;
 
+/// Model steps at most over a latency: at 60 ms no step is longer than 8 ms.
+const STEPS: usize = 8;
+/// Shortest time constant that the lead leaves of the rotors' lag, s, and the most by which it
+/// amplifies a command's step.
+const LED_LAG: f64 = 0.01;
+const MOST_LEAD: f64 = 5.0;
+
 /// A delay line of whole periods, then a first-order lag (11.6): the commands' way to thrust and
-/// torque.
+/// torque. A lag is led (11.9): what is sent goes beyond what is wanted, so that thrust and torque
+/// come to it sooner.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Actuators<T> {
     /// A ring of the last commands; `newest` counts them, and the last one stands there.
     line: [Command<T>; SLOTS],
     newest: usize,
     delay: usize,
-    /// Commands sent since the reset that do not act yet.
-    waiting: usize,
     /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
     decay: T,
     /// Share of a command's step that acts at once: 1 without lag, 0 with one. A number, so that no
     /// period branches.
     at_once: T,
-    /// Share of the newest command in the mean over the law's look ahead.
-    share: T,
     /// What acts up to this sample, and by how much that stepped at the last one.
     applied: Command<T>,
     step: Command<T>,
-    /// What the mean over the law's look ahead has over `applied`.
+    /// The rest is of a lag.
+    lag: Option<Lag<T>>,
+}
+
+/// A lag and its lead.
+#[derive(Clone, Copy, Debug)]
+struct Lag<T> {
+    decay: T,
+    /// Share of a command in the mean over its period.
+    mean_share: T,
+    /// τ over what the lead leaves of it, and the inverse.
+    lead: T,
+    per_lead: T,
+    /// Share of what is wanted in the mean from when the coming command begins to act to when the
+    /// law's answer is for.
+    share: T,
+    /// What will act when the coming command begins to, and what the mean over the law's look ahead
+    /// has over it.
+    arriving: Command<T>,
     drift: Command<T>,
+    /// The mean of what acted in the last period.
+    mean: Command<T>,
+}
+
+impl<T: Real> Lag<T> {
+    fn new(period: T, lag: T, led: T, ahead: T, command: Command<T>) -> Self {
+        let decay = (-period / lag).exp();
+        let settled = |lag: T, time: T| T::one() - lag / time * (T::one() - (-time / lag).exp());
+        Self {
+            decay,
+            mean_share: settled(lag, period),
+            lead: lag / led,
+            per_lead: led / lag,
+            share: if ahead > T::zero() { settled(led, ahead) } else { T::zero() },
+            arriving: command,
+            drift: Command::zero(),
+            mean: command,
+        }
+    }
+
+    /// What acts a period after `from` under `command`, and the mean until then.
+    fn pass(&self, from: &Command<T>, command: &Command<T>) -> (Command<T>, Command<T>) {
+        let missing = command.minus(from);
+        (command.minus(&missing.times(self.decay)), from.plus(&missing.times(self.mean_share)))
+    }
+}
+
+/// What the lead leaves of a `lag`, s.
+pub(crate) fn led<T: Real>(lag: T) -> T {
+    lag.min((lag * T::lit(1.0 / MOST_LEAD)).max(T::lit(LED_LAG)))
 }
 
 impl<T: Real> Actuators<T> {
@@ -130,38 +182,27 @@ impl<T: Real> Actuators<T> {
         let periods = latency / period + T::lit(0.5);
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
         let has_lag = lag > T::zero();
-        let (decay, at_once) = if has_lag { ((-period / lag).exp(), T::zero()) } else { (T::zero(), T::one()) };
-        // The newest command begins to act after the latency, and then as 1 − e^(−t/τ); until then
-        // the line's commands pass from the applied to the newest.
-        let acting = horizon - latency;
-        let settled = if has_lag { lag * (T::one() - (-acting / lag).exp()) } else { T::zero() };
-        let share =
-            if delay > 0 || has_lag { (acting - settled + latency * T::lit(0.5)) / horizon } else { T::zero() };
-        let share = if horizon > T::zero() { share } else { T::zero() };
-        let line = [command; SLOTS];
+        let lag = has_lag.then(|| Lag::new(period, lag, led(lag), horizon - latency, command));
         Ok(Self {
-            line,
+            line: [command; SLOTS],
             newest: 0,
             delay,
-            waiting: 0,
-            decay,
-            at_once,
-            share,
+            decay: lag.map_or(T::zero(), |lag| lag.decay),
+            at_once: if has_lag { T::zero() } else { T::one() },
             applied: command,
             step: Command::zero(),
-            drift: Command::zero(),
+            lag,
         })
     }
 
     /// As if `command` had been applied for long.
     pub(crate) fn reset(&mut self, command: Command<T>) {
-        if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
-            *slot = command;
-        }
-        self.waiting = 0;
+        self.line = [command; SLOTS];
         self.applied = command;
         self.step = Command::zero();
-        self.drift = Command::zero();
+        if let Some(lag) = &mut self.lag {
+            (lag.arriving, lag.drift, lag.mean) = (command, Command::zero(), command);
+        }
     }
 
     /// What acts up to this sample.
@@ -182,11 +223,72 @@ impl<T: Real> Actuators<T> {
         self.line.get(self.newest.wrapping_sub(before) % SLOTS).copied().unwrap_or(self.applied)
     }
 
-    /// What the mean over the law's look ahead has over [`applied`](Self::applied), as far as it is
-    /// known before the coming command: nothing without latency and lag.
+    /// What will act when the coming command begins to.
     #[inline]
-    pub(crate) fn drift(&self) -> &Command<T> {
-        &self.drift
+    pub(crate) fn arriving(&self) -> Command<T> {
+        self.lag.as_ref().map_or_else(|| self.sent(0), |lag| lag.arriving)
+    }
+
+    /// What the mean from then to when the law's answer is for has over [`arriving`](Self::arriving),
+    /// as far as it is known before the coming command: nothing without a lag.
+    #[inline]
+    pub(crate) fn drift(&self) -> Command<T> {
+        self.lag.as_ref().map_or_else(Command::zero, |lag| lag.drift)
+    }
+
+    /// The mean of what acted in the last period.
+    pub(crate) fn mean(&self) -> Command<T> {
+        self.lag.as_ref().map_or(self.applied, |lag| lag.mean)
+    }
+
+    /// The latency that is modelled, s.
+    pub(crate) fn latency(&self, period: T) -> T {
+        T::lit(self.delay as f64) * period
+    }
+
+    /// Whether there is a latency.
+    #[inline]
+    pub(crate) fn is_late(&self) -> bool {
+        self.delay > 0
+    }
+
+    /// The commands in flight: for each of a fixed number of steps from the sample to when the coming
+    /// command begins to act, its length in periods and the mean of what acts in it.
+    pub(crate) fn in_flight(&self) -> impl Iterator<Item = (T, Command<T>)> {
+        let steps = self.delay.min(STEPS);
+        let mut acting = self.applied;
+        (0..steps).map(move |index| {
+            let (begin, end) = (self.delay * index / steps, self.delay * (index + 1) / steps);
+            let mut sum = Command::zero();
+            for period in begin..end {
+                let command = self.sent(self.delay - 1 - period);
+                let mean = match &self.lag {
+                    None => command,
+                    Some(lag) => {
+                        let (then, mean) = lag.pass(&acting, &command);
+                        acting = then;
+                        mean
+                    }
+                };
+                sum = sum.plus(&mean);
+            }
+            let periods = T::lit((end - begin) as f64);
+            (periods, sum.times(T::one() / periods))
+        })
+    }
+
+    /// What is to be sent for `wanted` to act (11.9).
+    #[inline]
+    pub(crate) fn led(&self, wanted: &Command<T>) -> Command<T> {
+        let lead = |lag: &Lag<T>| lag.arriving.plus(&wanted.minus(&lag.arriving).times(lag.lead));
+        self.lag.as_ref().map_or(*wanted, lead)
+    }
+
+    /// What will act of a command `sent`: the inverse of [`led`](Self::led).
+    #[inline]
+    pub(crate) fn unled(&self, sent: &Command<T>) -> Command<T> {
+        let unlead = |lag: &Lag<T>| lag.arriving.plus(&sent.minus(&lag.arriving).times(lag.per_lead));
+        self.lag.as_ref().map_or(*sent, unlead)
     }
 
     /// Sends the command for the coming hold.
@@ -196,15 +298,22 @@ impl<T: Real> Actuators<T> {
         if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
             *slot = command;
         }
-        let delayed = if self.waiting < self.delay {
-            self.waiting += 1;
-            self.applied
-        } else {
-            self.sent(self.delay)
-        };
+        let delayed = self.sent(self.delay);
+        if self.lag.is_some() {
+            self.lag_behind(&command, &delayed);
+        }
         let step = delayed.minus(&self.applied);
         self.applied = delayed.minus(&step.times(self.decay));
         self.step = step.times(self.at_once);
-        self.drift = command.minus(&self.applied).times(self.share);
+    }
+
+    #[inline(never)]
+    fn lag_behind(&mut self, command: &Command<T>, delayed: &Command<T>) {
+        let wanted = self.unled(command);
+        if let Some(lag) = &mut self.lag {
+            (_, lag.mean) = lag.pass(&self.applied, delayed);
+            (lag.arriving, _) = lag.pass(&lag.arriving, command);
+            lag.drift = wanted.minus(&lag.arriving).times(lag.share);
+        }
     }
 }

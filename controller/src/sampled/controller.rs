@@ -151,6 +151,13 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         self.is_started = true;
     }
 
+    /// The command for the coming hold where no state was sampled now: from what the model makes of
+    /// the last one.
+    pub fn carry(&mut self) -> Solution<T, L::Xi> {
+        let carried = self.sampler.carry();
+        self.step(&carried)
+    }
+
     /// The command for the coming hold, from the state sampled now. Call once every period.
     #[inline]
     pub fn step(&mut self, sampled: &State<T>) -> Solution<T, L::Xi> {
@@ -196,12 +203,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         self.sampler.zeta()
     }
 
-    /// The disturbances found up to the last sample.
-    pub fn disturbance(&self) -> &Disturbance<T> {
+    /// The disturbances found up to the last sample, beyond the vehicle as it was told.
+    pub fn disturbance(&self) -> Disturbance<T> {
         self.sampler.disturbance()
     }
 
-    /// The vehicle as the law knows it.
+    /// The vehicle as it was told.
     pub fn vehicle(&self) -> &Vehicle<T> {
         self.sampler.vehicle()
     }

@@ -7,3 +7,4 @@ pub(crate) mod controller;
 pub(crate) mod observer;
 pub(crate) mod pull;
 pub(crate) mod sampler;
+pub(crate) mod weight;

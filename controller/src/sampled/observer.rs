@@ -22,10 +22,13 @@
 //! grows steadily is followed without lag. Along the rod d and δ act alike, so δ̂ is kept
 //! orthogonal to q.
 
-use model::{Disturbance, OutOfRange, Real, State, Vehicle};
+use model::{Disturbance, OutOfRange, Real, State, Vehicle, VehicleParams};
 use nalgebra::Vector3;
 
-use crate::ranges::{PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, TORQUE_BANDWIDTH, TORQUE_BOUND};
+use crate::ranges::{
+    ALONG_BANDWIDTH, CABLE_STIFFNESS, PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, TORQUE_BANDWIDTH,
+    TORQUE_BOUND,
+};
 
 /// Observer bandwidths o, rad/s, and the bounds of what they may find. A bandwidth of zero switches
 /// an observer off.
@@ -41,6 +44,11 @@ use crate::ranges::{PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, 
 pub struct ObserverParams<T> {
     /// Of d̂, rad/s.
     pub payload_bandwidth: T,
+    /// Of d̂ along the rod, rad/s, where it is less; 0: the same.
+    pub along_bandwidth: T,
+    /// EA of an elastic cable, N, along which the bandwidth is then no more than (12.8); 0: it does
+    /// not stretch.
+    pub cable_stiffness: T,
     /// Of δ̂, rad/s.
     pub rod_bandwidth: T,
     /// Of τ̂_d, rad/s.
@@ -64,6 +72,8 @@ impl<T: Real> ObserverParams<T> {
     pub fn with_bandwidth(bandwidth: T) -> Self {
         Self {
             payload_bandwidth: bandwidth,
+            along_bandwidth: ALONG_BANDWIDTH.default(),
+            cable_stiffness: CABLE_STIFFNESS.default(),
             rod_bandwidth: bandwidth,
             torque_bandwidth: bandwidth,
             payload_bound: PAYLOAD_BOUND.default(),
@@ -77,6 +87,8 @@ impl<T: Real> ObserverParams<T> {
     pub fn cast<U: Real>(&self) -> ObserverParams<U> {
         ObserverParams {
             payload_bandwidth: self.payload_bandwidth.cast(),
+            along_bandwidth: self.along_bandwidth.cast(),
+            cable_stiffness: self.cable_stiffness.cast(),
             rod_bandwidth: self.rod_bandwidth.cast(),
             torque_bandwidth: self.torque_bandwidth.cast(),
             payload_bound: self.payload_bound.cast(),
@@ -87,86 +99,124 @@ impl<T: Real> ObserverParams<T> {
 
     fn check(&self) -> Result<(), OutOfRange<T>> {
         PAYLOAD_BANDWIDTH.check(self.payload_bandwidth)?;
+        ALONG_BANDWIDTH.check(self.along_bandwidth)?;
+        CABLE_STIFFNESS.check(self.cable_stiffness)?;
         ROD_BANDWIDTH.check(self.rod_bandwidth)?;
         TORQUE_BANDWIDTH.check(self.torque_bandwidth)?;
         PAYLOAD_BOUND.check(self.payload_bound)?;
         ROD_BOUND.check(self.rod_bound)?;
         TORQUE_BOUND.check(self.torque_bound)
     }
+
+    /// The bandwidth along the rod, rad/s.
+    fn along(&self, vehicle: &Vehicle<T>) -> T {
+        let told = if self.along_bandwidth > T::zero() { self.along_bandwidth } else { self.payload_bandwidth };
+        told.min(self.payload_bandwidth).min(self.most_along(vehicle))
+    }
+
+    /// What the `vehicle`'s bounce on its cable allows along the rod, rad/s (12.8).
+    fn most_along(&self, vehicle: &Vehicle<T>) -> T {
+        let VehicleParams { payload_mass, uav_mass, rod_length, .. } = *vehicle.params();
+        if self.cable_stiffness > T::zero() {
+            let stiffness = self.cable_stiffness / rod_length;
+            (stiffness * (T::one() / payload_mass + T::one() / uav_mass)).sqrt() * T::lit(BOUNCE_SHARE)
+        } else {
+            T::lit(PAYLOAD_BANDWIDTH.max)
+        }
+    }
 }
 
-/// One observer: a velocity's prediction, and the gains that correct it, the disturbance and, of a
-/// force, its rate.
+/// Bandwidth along the rod over the frequency of a bounce on the cable, at most.
+const BOUNCE_SHARE: f64 = 0.1;
+
+/// What an innovation is multiplied by to correct a velocity, the disturbance and, of a force, its
+/// rate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Gains<T> {
+    velocity: T,
+    disturbance: T,
+    rate: T,
+}
+
+impl<T: Real> Gains<T> {
+    /// Of a disturbance that grows, (12.4): 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 − p)³/h² with p =
+    /// e^(−o h).
+    fn growing(bandwidth: T, period: T) -> Self {
+        let pole = (-bandwidth * period).exp();
+        let gap = (T::one() - pole) / period;
+        let square = gap * gap * period;
+        Self {
+            velocity: T::one() - pole * pole * pole,
+            disturbance: square * (T::one() + pole) * T::lit(1.5),
+            rate: square * gap,
+        }
+    }
+
+    /// Of one that stays: 1 − p² and (1 − p)²/h.
+    fn steady(bandwidth: T, period: T) -> Self {
+        let pole = (-bandwidth * period).exp();
+        let gap = T::one() - pole;
+        Self { velocity: gap * (T::one() + pole), disturbance: gap * gap / period, rate: T::zero() }
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        Self {
+            velocity: self.velocity - other.velocity,
+            disturbance: self.disturbance - other.disturbance,
+            rate: self.rate - other.rate,
+        }
+    }
+}
+
+/// One observer: a velocity's prediction, and what corrects it.
 #[derive(Clone, Copy, Debug)]
 struct Channel<T> {
-    velocity_gain: T,
-    disturbance_gain: T,
-    rate_gain: T,
+    gains: Gains<T>,
+    period: T,
     bound_squared: T,
     /// The velocity predicted with the first half of the running period's trapezoid.
     predicted: Vector3<T>,
 }
 
 impl<T: Real> Channel<T> {
-    /// Of a disturbance that grows, by the gains (12.4), 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 −
-    /// p)³/h² with p = e^(−o h).
-    fn growing(bandwidth: T, bound: T, period: T) -> Self {
-        let pole = (-bandwidth * period).exp();
-        let gap = (T::one() - pole) / period;
-        let square = gap * gap * period;
-        Self {
-            velocity_gain: T::one() - pole * pole * pole,
-            disturbance_gain: square * (T::one() + pole) * T::lit(1.5),
-            rate_gain: square * gap,
-            ..Self::steady(bandwidth, bound, period)
-        }
-    }
-
-    /// Of one that stays, by 1 − p² and (1 − p)²/h.
-    fn steady(bandwidth: T, bound: T, period: T) -> Self {
-        let pole = (-bandwidth * period).exp();
-        let gap = T::one() - pole;
-        Self {
-            velocity_gain: gap * (T::one() + pole),
-            disturbance_gain: gap * gap / period,
-            rate_gain: T::zero(),
-            bound_squared: bound * bound,
-            predicted: Vector3::zeros(),
-        }
+    fn new(gains: Gains<T>, bound: T, period: T) -> Self {
+        Self { gains, period, bound_squared: bound * bound, predicted: Vector3::zeros() }
     }
 
     /// Ends the running period with the acceleration just `before` the sample, corrects the
     /// velocity by what was `measured`, and begins the next with the one just `after` it. Returns
     /// the innovation.
     #[inline]
-    fn correct(
-        &mut self,
-        measured: &Vector3<T>,
-        before: &Vector3<T>,
-        after: &Vector3<T>,
-        half_period: T,
-    ) -> Vector3<T> {
+    fn correct(&mut self, measured: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) -> Vector3<T> {
+        let half_period = self.period * T::lit(0.5);
         let predicted = self.predicted + before * half_period;
         let innovation = measured - predicted;
-        self.predicted = predicted + innovation * self.velocity_gain + after * half_period;
+        self.predicted = predicted + innovation * self.gains.velocity + after * half_period;
         innovation
     }
 
-    /// [Corrects](Self::correct) the velocity, a force and its `rate`, and moves the force on by a
-    /// `period`.
+    /// [Corrects](Self::correct) the velocity, a force and its `rate`, with other gains in a
+    /// direction that stands `apart`, and moves the force on by a period.
     #[inline]
     fn grow(
         &mut self,
         measured: &Vector3<T>,
         before: &Vector3<T>,
         after: &Vector3<T>,
-        period: T,
         disturbance: &mut Vector3<T>,
         rate: &mut Vector3<T>,
+        apart: Option<(&Gains<T>, &Vector3<T>)>,
     ) {
-        let innovation = self.correct(measured, before, after, period * T::lit(0.5));
-        let found = *rate + innovation * self.rate_gain;
-        let is_taken = self.take(innovation * self.disturbance_gain + found * period, disturbance);
+        let innovation = self.correct(measured, before, after);
+        let mut found = *rate + innovation * self.gains.rate;
+        let mut correction = innovation * self.gains.disturbance;
+        if let Some((more, direction)) = apart {
+            let part = direction * direction.dot(&innovation);
+            self.predicted += part * more.velocity;
+            correction += part * more.disturbance;
+            found += part * more.rate;
+        }
+        let is_taken = self.take(correction + found * self.period, disturbance);
         *rate = if is_taken { found } else { Vector3::zeros() };
     }
 
@@ -188,22 +238,34 @@ pub struct Observer<T> {
     payload: Channel<T>,
     rod: Channel<T>,
     body: Channel<T>,
+    /// What d̂'s gains along the rod have over the others, where they are not the same.
+    along: Option<Gains<T>>,
+    most_along: T,
     inertia: Vector3<T>,
-    period: T,
     estimate: Disturbance<T>,
 }
 
 impl<T: Real> Observer<T> {
     pub(crate) fn new(vehicle: &Vehicle<T>, params: &ObserverParams<T>, period: T) -> Result<Self, OutOfRange<T>> {
         params.check()?;
+        let across = Gains::growing(params.payload_bandwidth, period);
+        let along = Gains::growing(params.along(vehicle), period).minus(&across);
+        let rod = Gains::growing(params.rod_bandwidth, period);
+        let torque = Gains::steady(params.torque_bandwidth, period);
         Ok(Self {
-            payload: Channel::growing(params.payload_bandwidth, params.payload_bound, period),
-            rod: Channel::growing(params.rod_bandwidth, params.rod_bound, period),
-            body: Channel::steady(params.torque_bandwidth, params.torque_bound, period),
+            payload: Channel::new(across, params.payload_bound, period),
+            rod: Channel::new(rod, params.rod_bound, period),
+            body: Channel::new(torque, params.torque_bound, period),
+            along: Some(along).filter(|along| along.velocity != T::zero()),
+            most_along: params.most_along(vehicle),
             inertia: *vehicle.inertia(),
-            period,
             estimate: Disturbance::none(),
         })
+    }
+
+    /// The bandwidth, rad/s, that an elastic cable allows along itself.
+    pub(crate) fn most_along(&self) -> T {
+        self.most_along
     }
 
     /// Forgets every estimate, and starts from `state`.
@@ -231,16 +293,23 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Corrects d̂ by the sampled payload's `velocity`. `before`: the model's acceleration just
+    /// Corrects d̂ by the sampled `rod` and payload's `velocity`. `before`: the model's acceleration just
     /// before the sample; `after`: just after it.
     ///
     /// Commands step at samples, and the model is affine in them. The last sample's `after` could
     /// not know its step, so this sample's `before` makes it good: the trapezoid over the last
     /// period has both of its ends. So it is with δ̂ and τ̂_d.
     #[inline]
-    pub(crate) fn correct_payload(&mut self, velocity: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) {
+    pub(crate) fn correct_payload(
+        &mut self,
+        rod: &Vector3<T>,
+        velocity: &Vector3<T>,
+        before: &Vector3<T>,
+        after: &Vector3<T>,
+    ) {
         let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
-        self.payload.grow(velocity, before, after, self.period, payload, payload_rate);
+        let apart = self.along.as_ref().map(|gains| (gains, rod));
+        self.payload.grow(velocity, before, after, payload, payload_rate, apart);
     }
 
     /// Corrects δ̂ by the sampled `rod` and its `rate`.
@@ -253,7 +322,7 @@ impl<T: Real> Observer<T> {
         after: &Vector3<T>,
     ) {
         let Disturbance { rod: delta, rod_rate: delta_1, .. } = &mut self.estimate;
-        self.rod.grow(rate, before, after, self.period, delta, delta_1);
+        self.rod.grow(rate, before, after, delta, delta_1, None);
         *delta -= rod * rod.dot(delta);
         *delta_1 -= rod * rod.dot(delta_1);
     }
@@ -261,8 +330,8 @@ impl<T: Real> Observer<T> {
     /// Corrects τ̂_d by the sampled `body_rate`.
     #[inline]
     pub(crate) fn correct_body(&mut self, body_rate: &Vector3<T>, before: &Vector3<T>, after: &Vector3<T>) {
-        let missed = self.body.correct(body_rate, before, after, self.period * T::lit(0.5));
-        let correction = missed.component_mul(&self.inertia) * self.body.disturbance_gain;
+        let missed = self.body.correct(body_rate, before, after);
+        let correction = missed.component_mul(&self.inertia) * self.body.gains.disturbance;
         self.body.take(correction, &mut self.estimate.torque);
     }
 }

@@ -11,7 +11,7 @@
 use model::{Real, Vehicle};
 use nalgebra::Vector3;
 
-/// o, rad/s: faster than a swing, slower than noise.
+/// o, rad/s: faster than a swing, slower than noise; less where a cable stretches.
 const BANDWIDTH: f64 = 10.0;
 /// Largest pull that is believed, in payload weights, and how much of it may be level beside what
 /// is vertical: a cable pulls down, wind sideways, and nothing lifts.
@@ -31,8 +31,9 @@ pub(crate) struct Pull<T> {
 }
 
 impl<T: Real> Pull<T> {
-    pub(crate) fn new(period: T) -> Self {
-        let pole = (-period * T::lit(BANDWIDTH)).exp();
+    /// Of no more than the bandwidth `most`, rad/s.
+    pub(crate) fn new(period: T, most: T) -> Self {
+        let pole = (-period * most.min(T::lit(BANDWIDTH))).exp();
         let gap = T::one() - pole;
         Self {
             velocity_gain: gap * (T::one() + pole),

@@ -9,7 +9,7 @@
 
 use model::{
     Command, Disturbance, OutOfRange, Real, State, Uav, Vehicle,
-    dynamics::{Model, across, advance, turn},
+    dynamics::{Model, across, advance, lambda, pass, turn},
 };
 use nalgebra::Vector3;
 
@@ -19,8 +19,9 @@ use crate::law::lift::lift;
 use crate::law::solution::Solution;
 use crate::law::{Ahead, Law};
 use crate::ranges::{LATENCY, MAX_THRUST, PERIOD, ROTOR_LAG};
-use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
+use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators, led};
 use crate::sampled::observer::{Observer, ObserverParams};
+use crate::sampled::weight::Weight;
 
 /// When the law is called and when its command acts.
 ///
@@ -74,7 +75,7 @@ impl<T: Real> Sampling<T> {
 
     /// From the sample to when the law is evaluated for.
     pub(crate) fn horizon(&self) -> T {
-        if self.look_ahead { self.latency + self.rotor_lag + self.half_hold() } else { T::zero() }
+        if self.look_ahead { self.latency + led(self.rotor_lag) + self.half_hold() } else { T::zero() }
     }
 }
 
@@ -92,10 +93,19 @@ pub struct Sampler<T, A = ActuatorLimits<T>> {
 
 #[derive(Clone, Debug)]
 struct Memory<T> {
+    /// As it was told, and with all mass as it is implied.
     vehicle: Vehicle<T>,
+    weighed: Vehicle<T>,
+    weight: Weight<T>,
     period: T,
     half_hold: T,
     horizon: T,
+    /// What of the horizon comes after the commands in flight.
+    rest: T,
+    /// The last state, sampled or carried.
+    last: State<T>,
+    /// The disturbance at the horizon, where there are commands in flight.
+    expected: Option<Disturbance<T>>,
     /// ζ when the coming command begins to act: `horizon` − `half_hold` after the sample. What lies
     /// between needs no prediction, since the compensator is the law's own.
     zeta: [T; 4],
@@ -121,11 +131,17 @@ impl<T: Real> Sampler<T> {
         let Sampling { period, latency, rotor_lag, .. } = *sampling;
         let horizon = sampling.horizon();
         let hover = Command::of_thrust(vehicle.hover_thrust());
+        let actuators = Actuators::new(period, latency, rotor_lag, horizon, hover)?;
         let memory = Memory {
             vehicle,
+            weighed: vehicle,
+            weight: Weight::told(),
             period,
             half_hold: sampling.half_hold(),
             horizon,
+            rest: if sampling.look_ahead { horizon - actuators.latency(period) } else { T::zero() },
+            last: State::at_rest(Vector3::zeros()),
+            expected: (sampling.look_ahead && actuators.is_late()).then(Disturbance::none),
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
             is_softening: false,
@@ -133,7 +149,7 @@ impl<T: Real> Sampler<T> {
             fade: (-period / T::lit(TAKE_OVER)).exp(),
             is_saturated: false,
             asked: hover,
-            actuators: Actuators::new(period, latency, rotor_lag, horizon, hover)?,
+            actuators,
             observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
         };
         Ok(Self { memory, actuation: ActuatorLimits::none() })
@@ -167,16 +183,26 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Asks `law` for its answer where its command acts.
     #[inline(always)]
     pub(crate) fn ask<L: Law<T>>(&self, law: &mut L, ahead: &Ahead<T>) {
-        law.evaluate(&self.memory.vehicle, ahead, self.memory.observer.estimate());
+        let Memory { weighed, observer, expected, .. } = &self.memory;
+        law.evaluate(weighed, ahead, expected.as_ref().unwrap_or(observer.estimate()));
     }
 
     /// Flies the answer of `law`: limits and sends its command, and moves on by a period.
     #[inline(always)]
     pub(crate) fn accept<L: Law<T>>(&mut self, law: &mut L) -> Command<T> {
         let Solution { command, u_zeta, margins, .. } = law.solution();
+        self.weigh(margins.lambda);
         let applied = self.commit(*command, *u_zeta, margins.q3 * margins.q_b3);
         law.accept(self.memory.period, self.memory.is_saturated);
         applied
+    }
+
+    /// Learns from λ without d what everything weighs, and flies on that.
+    #[inline(always)]
+    fn weigh(&mut self, lambda: T) {
+        let Memory { vehicle, weighed, weight, observer, last, period, .. } = &mut self.memory;
+        let share = weight.learn(lambda, observer.estimate().payload.dot(&last.rod), *period);
+        weighed.weigh(vehicle, share);
     }
 
     /// Starts from a stated ζ; until the first command the thrust is (3.5) and the torque zero.
@@ -185,9 +211,10 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         if !zeta.iter().all(|z| z.is_finite()) {
             return Err(Refused::Zeta);
         }
-        let thrust = lift(&self.memory.vehicle, state, &zeta, &Disturbance::none()).thrust(&self.memory.vehicle);
+        let vehicle = &self.memory.vehicle;
+        let thrust = lift(vehicle, state, &zeta, &Disturbance::none()).thrust(vehicle);
         // At a singularity (3.5) has no value, and what can't be applied was not applied.
-        let thrust = if thrust.is_finite() { thrust } else { self.memory.vehicle.hover_thrust() };
+        let thrust = if thrust.is_finite() { thrust } else { vehicle.hover_thrust() };
         let applied = self.actuation.apply(&Command::of_thrust(thrust));
         self.reset(state, applied);
         self.memory.zeta = zeta;
@@ -223,8 +250,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// fades.
     #[inline(never)]
     pub(crate) fn carry_on(&mut self, state: &State<T>) {
-        let thrust = self.memory.actuators.applied().thrust;
-        self.memory.zeta = continuing(&self.memory.vehicle, state, thrust, self.memory.observer.estimate());
+        let thrust = self.memory.actuators.arriving().thrust;
+        self.memory.zeta = continuing(&self.memory.weighed, state, thrust, self.memory.observer.estimate());
         self.memory.u_zeta = T::zero();
         self.soften();
     }
@@ -232,6 +259,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Has the next command's step against what is being applied fade.
     pub(crate) fn soften(&mut self) {
         self.memory.is_softening = true;
+    }
+
+    /// The bandwidth, rad/s, that the cable allows along itself.
+    pub(crate) fn most_along(&self) -> T {
+        self.memory.observer.most_along()
+    }
+
+    /// What everything weighs.
+    #[inline]
+    pub(crate) fn weight(&self) -> &Weight<T> {
+        &self.memory.weight
     }
 
     /// Lets a period pass without a usable state: the last command goes on.
@@ -270,7 +308,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.observer.restart(state);
     }
 
+    /// The state now by the model, where none was sampled: what the last one has become in a
+    /// period under what acted.
+    #[cold]
+    pub(crate) fn carry(&self) -> State<T> {
+        let Memory { weighed, period, last, actuators, observer, .. } = &self.memory;
+        pass(weighed, last, observer.estimate(), &actuators.mean(), *period).0
+    }
+
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
+        self.memory.last = *state;
+        (self.memory.weighed, self.memory.weight) = (self.memory.vehicle, Weight::told());
         self.memory.actuators.reset(applied);
         self.memory.observer.reset(state);
     }
@@ -292,30 +340,39 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// The UAV where its command acts: its own position and velocity, after the time that attitude
     /// and body rate look `ahead`.
     pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
-        let Memory { vehicle, horizon, actuators, observer, .. } = &self.memory;
-        let applied = actuators.applied();
+        let Memory { period, rest, actuators, .. } = &self.memory;
+        let step = |uav: Uav<T>, (time, command): (T, Command<T>)| self.pass_uav(&uav, force, &command, time);
+        let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
+        let coming = (*rest, actuators.arriving().plus(&actuators.drift()));
+        in_flight.chain([coming]).fold(*uav, step)
+    }
+
+    /// The UAV `dt` later under a held `command` and what pulls at it, m/s².
+    fn pass_uav(&self, uav: &Uav<T>, force: &Vector3<T>, command: &Command<T>, dt: T) -> Uav<T> {
+        let Memory { vehicle, observer, .. } = &self.memory;
         let b3: Vector3<T> = uav.attitude.column(2).into();
-        let mut acceleration = force - b3 * (applied.thrust / vehicle.params().uav_mass);
+        let mut acceleration = force - b3 * (command.thrust / vehicle.params().uav_mass);
         acceleration.z += vehicle.params().gravity;
-        let (position, velocity) = advance(&uav.position, &uav.velocity, &acceleration, *horizon);
-        let torque = applied.torque + observer.estimate().torque;
+        let (position, velocity) = advance(&uav.position, &uav.velocity, &acceleration, dt);
+        let torque = command.torque + observer.estimate().torque;
         let inertia = vehicle.inertia();
         let spin = (inertia.component_mul(&uav.body_rate).cross(&uav.body_rate) + torque)
             .component_mul(vehicle.inverse_inertia());
-        let (attitude, body_rate) = turn(&uav.attitude, &uav.body_rate, &spin, *horizon);
+        let (attitude, body_rate) = turn(&uav.attitude, &uav.body_rate, &spin, dt);
         Uav { position, velocity, attitude, body_rate }
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
     #[inline]
     pub(crate) fn sample(&mut self, sampled: &State<T>) -> Ahead<T> {
-        let (dt, observer, actuators) = (self.memory.horizon, &mut self.memory.observer, &self.memory.actuators);
+        self.memory.last = *sampled;
+        let (dt, observer, actuators) = (self.memory.rest, &mut self.memory.observer, &self.memory.actuators);
         let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
         let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
-        let model = Model::at(&self.memory.vehicle, sampled);
+        let model = Model::at(&self.memory.weighed, sampled);
 
         let (after, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
-        observer.correct_payload(velocity, &(after + per_newton * step.thrust), &after);
+        observer.correct_payload(rod, velocity, &(after + per_newton * step.thrust), &after);
         let (position, velocity) = advance(position, velocity, &(after + per_newton * drift.thrust), dt);
 
         let (after, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
@@ -328,7 +385,27 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let (attitude, body_rate) = turn(attitude, body_rate, &mean, dt);
 
         let state = State { position, velocity, rod, rod_rate, attitude, body_rate };
-        Ahead { state, horizon: dt, zeta: propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.half_hold) }
+        let zeta = propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.half_hold);
+        let mut ahead = Ahead { state, horizon: self.memory.horizon, zeta };
+        if self.memory.expected.is_some() {
+            self.fly_through(sampled, &mut ahead.state);
+        }
+        ahead
+    }
+
+    /// Looks ahead through the commands in flight: the model, and the disturbances at their rates,
+    /// in a fixed number of steps (11.10).
+    #[inline(never)]
+    fn fly_through(&mut self, sampled: &State<T>, ahead: &mut State<T>) {
+        let Memory { weighed, period, rest, actuators, observer, .. } = &self.memory;
+        let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
+        let coming = (*rest, actuators.arriving().plus(&actuators.drift()));
+        let (state, expected) =
+            in_flight.chain([coming]).fold((*sampled, *observer.estimate()), |(state, known), (time, mean)| {
+                pass(weighed, &state, &known, &mean, time)
+            });
+        *ahead = state;
+        self.memory.expected = Some(expected);
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
@@ -339,16 +416,19 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     pub(crate) fn commit(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
         if self.memory.is_softening {
             self.memory.is_softening = false;
-            self.memory.bump = self.memory.actuators.applied().minus(&command);
+            self.memory.bump = self.memory.actuators.arriving().minus(&command);
         }
         let smooth = command.plus(&self.memory.bump);
         self.memory.bump = self.memory.bump.times(self.memory.fade);
-        let applied = self.send(&smooth);
-        self.memory.is_saturated = applied.thrust != smooth.thrust;
+        let wanted = self.memory.actuators.led(&smooth);
+        let applied = self.actuation.apply(&wanted);
+        let acting = self.memory.actuators.unled(&applied);
+        self.memory.actuators.push(applied);
+        self.memory.is_saturated = applied.thrust != wanted.thrust;
         self.memory.asked = smooth;
         self.memory.zeta = propagate(&self.memory.zeta, u_zeta, self.memory.period);
-        let missing = command.thrust - applied.thrust;
-        self.memory.zeta[0] += missing * alignment * self.memory.vehicle.per_total_mass();
+        let missing = command.thrust - acting.thrust;
+        self.memory.zeta[0] += missing * alignment * self.memory.weighed.per_total_mass();
         self.memory.u_zeta = u_zeta;
         applied
     }
@@ -358,12 +438,28 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         &self.memory.zeta
     }
 
-    /// The disturbances found up to the last sample.
-    pub fn disturbance(&self) -> &Disturbance<T> {
-        self.memory.observer.estimate()
+    /// The disturbances found up to the last sample, beyond the vehicle as it was told.
+    pub fn disturbance(&self) -> Disturbance<T> {
+        let Memory { vehicle, weighed, last, actuators, observer, .. } = &self.memory;
+        let thrust = actuators.applied().thrust;
+        let mut found = *observer.estimate();
+        found.payload += last.rod * (lambda(weighed, last, thrust) - lambda(vehicle, last, thrust));
+        found
     }
 
-    /// The vehicle as the law knows it.
+    /// The payload's mass, kg, that would explain the force along the rod in still air (12.6).
+    pub fn payload_mass(&self) -> T {
+        let Memory { vehicle, last, actuators, .. } = &self.memory;
+        let lambda = lambda(vehicle, last, actuators.applied().thrust);
+        self.disturbance().implied_payload_mass(vehicle, &last.rod, lambda)
+    }
+
+    /// The last state, sampled or by the model.
+    pub fn state(&self) -> &State<T> {
+        &self.memory.last
+    }
+
+    /// The vehicle as it was told.
     pub fn vehicle(&self) -> &Vehicle<T> {
         &self.memory.vehicle
     }

@@ -256,6 +256,14 @@ pub const SECTIONS: &[Section] = &[
         least: "",
         keys: &[
             key("payload", "rad/s", Number(0.0, 100.0), "0.0", "Of the force on the payload."),
+            key("along", "rad/s", Number(0.0, 100.0), "0.0", "Of that along the rod, where it is less; 0: the same."),
+            key(
+                "cable_stiffness",
+                "N",
+                Number(0.0, 1e8),
+                "0.0",
+                "EA of the cable as the law knows it, which bounds the bandwidth along it; 0: it does not stretch.",
+            ),
             key("rod", "rad/s", Number(0.0, 100.0), "0.0", "Of the force across the rod."),
             key("torque", "rad/s", Number(0.0, 100.0), "0.0", "Of the torque on the UAV."),
         ],
@@ -908,7 +916,8 @@ pub const SECTIONS: &[Section] = &[
                 "0.0",
                 "Each period is uniform within this part of the nominal one, either way.",
             ),
-            key("missed", "", Number(0.0, 0.9), "0.0", "Probability that the controller is not called at a sample."),
+            key("missed", "", Number(0.0, 0.9), "0.0", "Probability that no state comes in a control period."),
+            key("state_every", "", Number(1.0, 1000.0), "1", "Control periods from one state to the next."),
         ],
     },
 ];

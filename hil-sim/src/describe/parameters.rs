@@ -40,8 +40,10 @@ pub fn without_path(spec: &ControllerSpec) -> Result<Parameters<f64>, Unsupporte
     one(all, parameter!("VEH_G"), gravity)?;
     let Sampling { period, latency, rotor_lag, look_ahead } = spec.sampling();
     run_of(all, run!("CTL_PERIOD" to "CTL_AHEAD"), [period, latency, rotor_lag, f64::from(u8::from(look_ahead))])?;
-    let ObserverParams { payload_bandwidth, rod_bandwidth, torque_bandwidth, .. } = spec.observer;
-    run_of(all, run!("OBS_W_LOAD" to "OBS_W_TAU"), [payload_bandwidth, rod_bandwidth, torque_bandwidth])?;
+    let ObserverParams { payload_bandwidth, along_bandwidth, cable_stiffness, .. } = spec.observer;
+    run_of(all, run!("OBS_W_LOAD" to "OBS_EA"), [payload_bandwidth, along_bandwidth, cable_stiffness])?;
+    let ObserverParams { rod_bandwidth, torque_bandwidth, .. } = spec.observer;
+    run_of(all, run!("OBS_W_ROD" to "OBS_W_TAU"), [rod_bandwidth, torque_bandwidth])?;
     let ObserverParams { payload_bound, rod_bound, torque_bound, .. } = spec.observer;
     run_of(all, run!("OBS_MAX_LOAD" to "OBS_MAX_TAU"), [payload_bound, rod_bound, torque_bound])?;
     let ActuatorLimits { min_thrust, max_thrust, max_torque } = spec.limits;

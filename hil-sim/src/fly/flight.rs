@@ -9,6 +9,7 @@ use super::pilot::{Answers, Decision};
 use super::sight::Sight;
 use super::touchdown::{Touchdown, Watch};
 use crate::describe::scenario::{Mission, Scenario};
+use crate::world::Reading;
 use crate::world::{Body, Seed};
 
 /// A flight this far from its path is lost and ends, m; one that starts further off, at twice its
@@ -150,8 +151,7 @@ pub fn fly(
     let mut mission = Mission::of(scenario);
     let mut ground = Watch::new(scenario.ground, period);
     let mut zeta = controller.zeta;
-    // What goes on where the pilot misses a sample; none before it begins.
-    let mut last: Option<Decision> = None;
+    let mut has_begun = false;
     let mut told_s = 0.0;
     let mut end = End::Complete;
     let mut step = 0;
@@ -169,7 +169,7 @@ pub fn fly(
         if held.as_ref().is_some_and(|held| held.start == step) {
             let attitude = world.body().state().attitude;
             world.stop(libm::atan2(attitude.m21, attitude.m22));
-            (last, zeta) = (None, [0.0; 4]);
+            (has_begun, zeta) = (false, [0.0; 4]);
         }
         let state = world.body().state();
         let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
@@ -210,21 +210,20 @@ pub fn fly(
             Some(sight) => sight.see(&world, &applied),
             None => world.read(&state),
         };
-        if last.is_none() || !world.misses() {
-            if last.is_none() && !scenario.standing {
-                match plan.entry {
-                    Entry::Stated => pilot.start(&read.state, zeta),
-                    Entry::Hover => pilot.take_over(&read.state, &hover),
-                }
+        if !has_begun && !scenario.standing {
+            match plan.entry {
+                Entry::Stated => pilot.start(&read.state, zeta),
+                Entry::Hover => pilot.take_over(&read.state, &hover),
             }
-            // A controller counts its periods.
-            last = pilot.step(&read, request, step as f64 * period);
         }
-        let Some(decision) = &last else {
+        let read = Reading { comes: !(has_begun && world.misses()), ..read };
+        has_begun = true;
+        // A controller counts its periods.
+        let Some(decision) = pilot.step(&read, request, step as f64 * period) else {
             end = End::Unanswered(t_s);
             break;
         };
-        watch(&Moment { decision: Some(decision), sight: sight.as_ref(), ..seen });
+        watch(&Moment { decision: Some(&decision), sight: sight.as_ref(), ..seen });
         if ground.has_landed(world.body(), request, decision.mode) && mission.is_over() {
             end = End::Landed(t_s);
             break;

@@ -116,7 +116,8 @@ impl<T: Real> Pilot<T> {
         let state: State<T> = read.state.cast();
         let uav = read.uav.as_ref().map(Uav::cast);
         let specific_force = read.specific_force.map(|force| force.map(T::lit));
-        let measured = Measured { state: Some(&state), uav: uav.as_ref(), specific_force };
+        let all = Measured { state: Some(&state), uav: uav.as_ref(), specific_force };
+        let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
         let (zeta, integral) = (*self.rig.zeta(), self.rig.integral());
         let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);

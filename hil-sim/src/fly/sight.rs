@@ -149,6 +149,7 @@ impl Sight {
         let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
         let uav = Uav { position, velocity, attitude, body_rate };
         Reading {
+            comes: true,
             state: estimate.state.cast(),
             uav: apart.then(|| uav.cast()),
             specific_force: apart.then(|| specific_force.map(f64::from)),

@@ -287,7 +287,7 @@ impl Target {
         frame.time_usec = (t_s * 1e6).round() as u64 + 1;
         frame.sequence = self.sequence;
         let is_logged = ((t_s * self.rate_hz).round() as u64).is_multiple_of(self.log_every);
-        frame.telemetry = u8::from(is_logged && self.line.options().telemetry);
+        frame.telemetry = u8::from(measured.state.is_some() && is_logged && self.line.options().telemetry);
         frame.reference_phase = ((self.reference_rate * t_s) % std::f64::consts::TAU) as f32;
         match std::mem::replace(&mut self.begin, Begin::Begun) {
             Begin::Begun => {}
@@ -446,8 +446,9 @@ impl Answers for Target {
     }
 
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
-        let Reading { state, uav, specific_force } = read;
-        let measured = Measured { state: Some(state), uav: uav.as_ref(), specific_force: *specific_force };
+        let Reading { comes, state, uav, specific_force } = read;
+        let all = Measured { state: Some(state), uav: uav.as_ref(), specific_force: *specific_force };
+        let measured = if *comes { all } else { None.into() };
         let answer = self.fly(&measured, request, t_s);
         answer.map_err(|error| self.failure = Some(error)).ok()
     }

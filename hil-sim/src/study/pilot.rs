@@ -79,6 +79,7 @@ impl Controller {
         };
         let Bodies { uav_position: position, uav_velocity: velocity, attitude, body_rate, .. } = bodies;
         let reading = Reading {
+            comes: true,
             state: bodies.state(),
             uav: Some(Uav { position, velocity, attitude, body_rate }),
             specific_force: seen.specific_force.map(Vector3::from),

@@ -49,7 +49,8 @@
 //!
 //! [timing]
 //! jitter = 0.1                      # each control period within ±10 %
-//! missed = 0.01                     # probability that the controller is not called
+//! missed = 0.01                     # probability that no state comes in a period
+//! state_every = 5                   # periods from one state to the next
 //! ```
 
 mod actuators;
@@ -143,6 +144,8 @@ pub struct World {
     /// ½ ρ C_d A of payload and UAV, kg/m.
     drag: [f64; 2],
     clock: Stream,
+    /// Periods since the first with a state.
+    since_first: u32,
     t_s: f64,
 }
 
@@ -173,6 +176,7 @@ impl World {
             }),
             body,
             clock: seed.stream(Purpose::Timing),
+            since_first: 0,
             spec: *spec,
             t_s: 0.0,
         }
@@ -214,12 +218,13 @@ impl World {
             let attitude = self.body.bodies().attitude;
             self.sensors.read_force(self.t_s, &attitude.tr_mul(&acceleration))
         });
-        Reading { state, uav, specific_force }
+        Reading { comes: true, state, uav, specific_force }
     }
 
-    /// Whether the controller misses this sample. At most once a period.
+    /// Whether no state comes to the controller in this period. Once a period, after the first.
     pub fn misses(&mut self) -> bool {
-        self.spec.timing.misses(&mut self.clock)
+        self.since_first = self.since_first.wrapping_add(1);
+        self.spec.timing.misses(self.since_first, &mut self.clock)
     }
 
     /// Stops the vehicle as the paper's obstacle does: level, rod straight down, all velocities

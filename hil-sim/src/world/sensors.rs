@@ -53,6 +53,8 @@ impl Window {
 /// What the controller is given at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
+    /// Whether it comes to the controller.
+    pub comes: bool,
     /// Load, rod and UAV.
     pub state: State<f64>,
     /// The UAV as its own navigation has it, where it does.
@@ -64,7 +66,7 @@ pub struct Reading {
 impl From<State<f64>> for Reading {
     /// The state and nothing else.
     fn from(state: State<f64>) -> Self {
-        Self { state, uav: None, specific_force: None }
+        Self { comes: true, state, uav: None, specific_force: None }
     }
 }
 

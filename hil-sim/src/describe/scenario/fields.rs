@@ -101,6 +101,8 @@ impl Default for ControllerFields {
 #[serde(deny_unknown_fields, default)]
 struct ObserverFields {
     payload: f64,
+    along: f64,
+    cable_stiffness: f64,
     rod: f64,
     torque: f64,
 }
@@ -338,6 +340,8 @@ impl ObserverFields {
         let bandwidth = |name: &str, value| within(&format!("controller.observer.{name}"), value, 0.0..=100.0);
         Ok(ObserverParams {
             payload_bandwidth: bandwidth("payload", self.payload)?,
+            along_bandwidth: bandwidth("along", self.along)?,
+            cable_stiffness: within("controller.observer.cable_stiffness", self.cable_stiffness, 0.0..=1e8)?,
             rod_bandwidth: bandwidth("rod", self.rod)?,
             torque_bandwidth: bandwidth("torque", self.torque)?,
             ..ObserverParams::off()
