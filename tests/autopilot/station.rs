@@ -14,7 +14,7 @@ pub fn start() -> State<f32> {
 /// The `sequence`-th state, every 2 ms; no two in a row are the same, as no measurements are.
 pub fn frame_of(state: &State<f32>, sequence: u32) -> LOAD_STATE_DATA {
     let mut frame = state_frame(state);
-    frame.velocity[0] += if sequence.is_multiple_of(2) { 1e-6 } else { 0.0 };
+    frame.velocity[0] += 1e-6 * (sequence % 7) as f32;
     LOAD_STATE_DATA { time_usec: 2_000 * u64::from(sequence) + 1, sequence, ..frame }
 }
 

@@ -254,6 +254,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let velocity = self.now(&state, uav).velocity;
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
+        self.change_mode(Some(&state), uav);
         let output = self.fly(&state, uav);
         Some(Output { fault: output.fault.or(Some(fault)), ..output })
     }
