@@ -55,6 +55,7 @@ fn standard_messages_have_the_official_layout() {
         (148, 178),
         (245, 130),
         (253, 83),
+        (397, 182),
         (435, 134),
         (436, 193),
     ] {

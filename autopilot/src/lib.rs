@@ -21,6 +21,7 @@
 mod control;
 mod epoch;
 mod failsafe;
+mod metadata;
 mod report;
 mod seen;
 mod server;
@@ -29,6 +30,7 @@ mod store;
 
 pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive, Notice};
 pub use failsafe::Loss;
+pub use metadata::{File, page as metadata_page};
 pub use server::{Next, Server};
 pub use settings::{Setting, Settings, entries};
 pub use store::{Flash, FlashFault, NotKept, RECORD, Store};

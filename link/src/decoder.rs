@@ -139,6 +139,7 @@ fn longest_payload(id: u32) -> Option<usize> {
         AUTOPILOT_VERSION_DATA,
         EXTENDED_SYS_STATE_DATA,
         STATUSTEXT_DATA,
+        COMPONENT_METADATA_DATA,
         AVAILABLE_MODES_DATA,
         CURRENT_MODE_DATA,
         LOAD_STATE_DATA,

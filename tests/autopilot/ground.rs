@@ -257,31 +257,99 @@ fn commands_with_a_place_have_to_be_sent_without() {
     assert_eq!((ack.command, ack.result), (command, MavResult::MAV_RESULT_COMMAND_LONG_ONLY as u8));
 }
 
+/// A request for an operation, and the answer's outcome and data.
+fn transfer(station: &mut Station, operation: u8, offset: u32, data: &[u8]) -> Option<(u8, Vec<u8>)> {
+    let mut payload = [0; 251];
+    payload[..6].copy_from_slice(&[0xFF, 0xFF, 9, operation, data.len() as u8, 0]);
+    payload[8..12].copy_from_slice(&offset.to_le_bytes());
+    payload[12..12 + data.len()].copy_from_slice(data);
+    let request = FILE_TRANSFER_PROTOCOL_DATA {
+        target_system: 1,
+        target_component: 1,
+        payload,
+        ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT
+    };
+    let replies = station.say(&MavMessage::FILE_TRANSFER_PROTOCOL(request));
+    let [MavMessage::FILE_TRANSFER_PROTOCOL(answer)] = &replies[..] else {
+        assert_eq!(replies, []);
+        return None;
+    };
+    assert_eq!((answer.target_system, answer.target_component), link::STATION);
+    // The next number, the same session, and of which operation it is.
+    assert_eq!((&answer.payload[..3], answer.payload[5]), (&[0, 0, 9][..], operation));
+    let length = usize::from(answer.payload[4]);
+    Some((answer.payload[3], answer.payload[12..12 + length].to_vec()))
+}
+
 #[test]
-fn a_request_for_a_file_is_answered_at_once() {
+fn every_request_for_a_file_is_answered_at_once() {
     let mut station = Station::new(driven(0.0));
     for operation in 0..=255_u8 {
-        let mut payload = [0; 251];
-        payload[..6].copy_from_slice(&[0xFF, 0xFF, 9, operation, 0, 0]);
-        let request = FILE_TRANSFER_PROTOCOL_DATA {
-            target_system: 1,
-            target_component: 1,
-            payload,
-            ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT
+        let answer = transfer(&mut station, operation, 0, b"/etc/passwd");
+        let expected = match operation {
+            128.. => None,
+            // Closing what is not open is no fault.
+            1 | 2 => Some((128, vec![])),
+            5 | 15 => Some((129, vec![4])),
+            3 | 4 | 14 => Some((129, vec![10])),
+            _ => Some((129, vec![7])),
         };
-        let replies = station.say(&MavMessage::FILE_TRANSFER_PROTOCOL(request));
-        if operation >= 128 {
-            // An answer, not a request.
-            assert_eq!(replies, []);
-            continue;
-        }
-        let [MavMessage::FILE_TRANSFER_PROTOCOL(answer)] = &replies[..] else { panic!("{replies:?}") };
-        assert_eq!((answer.target_system, answer.target_component), link::STATION);
-        // The next number, the same session, and of which operation it is.
-        assert_eq!((&answer.payload[..3], answer.payload[5]), (&[0, 0, 9][..], operation));
-        let is_closed = [1, 2].contains(&operation);
-        assert_eq!((answer.payload[3], answer.payload[4]), if is_closed { (128, 0) } else { (129, 1) });
+        assert_eq!(answer, expected, "{operation}");
     }
     assert_eq!(texts(&station.messages()), Vec::<String>::new());
-    assert!(!station.autopilot.is_armed());
+}
+
+/// A file, as a ground station reads it.
+fn fetched(station: &mut Station, name: &[u8], read: u8) -> Vec<u8> {
+    let (_, length) = transfer(station, 4, 0, name).unwrap();
+    let length = u32::from_le_bytes(length.try_into().unwrap()) as usize;
+    let mut file = Vec::new();
+    loop {
+        match transfer(station, read, file.len() as u32, &[]).unwrap() {
+            (128, data) => file.extend(data),
+            end => {
+                assert_eq!(end, (129, vec![6]));
+                break;
+            }
+        }
+    }
+    assert_eq!(file.len(), length);
+    transfer(station, 1, 0, &[]);
+    file
+}
+
+#[test]
+fn ground_stations_read_what_every_parameter_is() {
+    let mut station = Station::new(driven(0.0));
+    let command = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
+    let replies = station.say(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+        command,
+        param1: 397.0,
+        ..COMMAND_LONG_DATA::DEFAULT
+    }));
+    let MavMessage::COMPONENT_METADATA(metadata) = &replies[0] else { panic!("{replies:?}") };
+    assert_eq!(link::text_of(&*metadata.uri), "mftp:///general.json");
+    let general = fetched(&mut station, b"/general.json", 15);
+    let general: serde_json::Value = serde_json::from_slice(&general).expect("JSON");
+    assert_eq!(general["metadataTypes"][0]["uri"], "mftp:///parameters.json");
+    let (_, checksum) = transfer(&mut station, 14, 0, b"/parameters.json").unwrap();
+    let checksum = u32::from_le_bytes(checksum.try_into().unwrap());
+    assert_eq!(general["metadataTypes"][0]["fileCrc"], checksum);
+
+    let file = fetched(&mut station, b"/parameters.json", 5);
+    assert!(file == include_bytes!("../../docs/parameters.json"), "docs/parameters.json is not the table's");
+    let file: serde_json::Value = serde_json::from_slice(&file).expect("JSON");
+    let parameters = file["parameters"].as_array().unwrap();
+    assert_eq!(parameters.len(), autopilot::Settings::COUNT);
+    for (told, entry) in parameters.iter().zip(autopilot::entries()) {
+        let name = entry.name.as_str();
+        assert_eq!(told["name"], name);
+        for (key, value) in [("default", entry.default), ("min", entry.min), ("max", entry.max)] {
+            assert_eq!(told[key].as_f64().map(|number| number as f32), Some(value), "{name} {key}");
+        }
+        assert_eq!((told["units"].as_str(), told["shortDesc"].as_str()), (Some(entry.unit), Some(entry.text)));
+    }
+    let mut page = String::new();
+    autopilot::metadata_page(&mut page).unwrap();
+    assert!(page == include_str!("../../docs/parameters.md"), "docs/parameters.md is not the table's");
 }

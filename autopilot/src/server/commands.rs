@@ -1,6 +1,6 @@
 //! COMMAND_LONG: arming, modes, reboot, and messages that are asked for.
 
-use core::fmt::Display;
+use core::fmt::{Display, Write as _};
 
 use controller::{Mode, Request};
 use link::MavMessage;
@@ -9,6 +9,7 @@ use link::dialect::*;
 use super::modes::{self, MODES};
 use super::{Next, Server, warning};
 use crate::control::Autopilot;
+use crate::metadata::File;
 use crate::report;
 
 /// The second parameter that has a vehicle disarmed in flight, as all of MAVLink has it.
@@ -80,12 +81,15 @@ impl Server {
         const AVAILABLE: f32 = 435.0;
         const VERSION: f32 = 148.0;
         const LANDED: f32 = 245.0;
+        const METADATA: f32 = 397.0;
         if request.param1 == MODE {
             send(Self::current_mode(autopilot));
         } else if request.param1 == VERSION {
             send(version());
         } else if request.param1 == LANDED {
             send(Self::landed_state(autopilot));
+        } else if request.param1 == METADATA {
+            send(metadata());
         } else if request.param1 == AVAILABLE && request.param2 == 0.0 {
             self.modes = Some(0);
         } else if request.param1 == AVAILABLE {
@@ -130,10 +134,23 @@ fn ask(autopilot: &mut Autopilot, mode: Mode, is_set: bool) -> Result<(), &'stat
     Ok(())
 }
 
+/// Where what the parameters are can be read.
+fn metadata() -> MavMessage {
+    let mut uri = report::Text::new();
+    // It fits.
+    let _ = write!(uri, "mftp://{}", File::General.name());
+    MavMessage::COMPONENT_METADATA(COMPONENT_METADATA_DATA {
+        time_boot_ms: 0,
+        file_crc: File::General.checksum(),
+        uri: link::text(&uri),
+    })
+}
+
 /// What the program is and can do.
 fn version() -> MavMessage {
-    /// MAVLink 2, and integers in PARAM_SET as their bytes. Signing would be a bit here.
-    const CAPABILITIES: u64 = 8192 | 16;
+    /// MAVLink 2, file transfer, and integers in PARAM_SET as their bytes. Signing would be a bit
+    /// here.
+    const CAPABILITIES: u64 = 8192 | 32 | 16;
     let number = |text: &str| text.parse::<u32>().unwrap_or_default();
     let [major, minor, patch] =
         [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]

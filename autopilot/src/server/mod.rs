@@ -15,6 +15,7 @@ use link::{Address, MavMessage, Message as _, Rejected};
 use crate::control::{Autopilot, Drive};
 use crate::report;
 use crate::store::NotKept;
+use files::Files;
 use stick::Switches;
 
 /// What a ground station says that it is.
@@ -46,6 +47,7 @@ pub struct Server {
     modes: Option<usize>,
     /// What the pilot's switches said last.
     switches: Switches,
+    files: Files,
 }
 
 impl Default for Server {
@@ -59,7 +61,15 @@ impl Server {
     #[must_use]
     pub const fn new() -> Self {
         let switches = Switches { mode: None, kill: false };
-        Self { bad_frames: 0, reported: (Mode::Off, None, None), noticed: 0, listing: None, modes: None, switches }
+        Self {
+            bad_frames: 0,
+            reported: (Mode::Off, None, None),
+            noticed: 0,
+            listing: None,
+            modes: None,
+            switches,
+            files: Files::new(),
+        }
     }
 
     /// What the controller says when it has started: it speaks first, since bytes sent to it before
@@ -215,7 +225,9 @@ impl Server {
                 let result = MavResult::MAV_RESULT_COMMAND_LONG_ONLY as u8;
                 send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }));
             }
-            MavMessage::FILE_TRANSFER_PROTOCOL(request) => files::answer(&request, sender).into_iter().for_each(send),
+            MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
+                self.files.answer(&request, sender).into_iter().for_each(send);
+            }
             MavMessage::LOCAL_POSITION_NED(place) => autopilot.navigation_mut().hear_place(&place),
             MavMessage::ATTITUDE_QUATERNION(attitude) => autopilot.navigation_mut().hear_attitude(&attitude),
             MavMessage::HIGHRES_IMU(imu) => autopilot.navigation_mut().hear_imu(&imu),

@@ -8,7 +8,7 @@
 //!   the traits below;
 //! - `start`, `stop_rotors` (in any state, interrupts off) and `reset`.
 
-use autopilot::{Boot, Flash, Settings, Store};
+use autopilot::{Boot, Settings, Store};
 use embedded_hal::pwm::SetDutyCycle;
 
 #[cfg(feature = "mps2")]
@@ -101,7 +101,7 @@ pub fn recall(memory: Memory) -> (Settings, Option<Store<Memory>>) {
 pub struct NoMemory(());
 
 #[cfg(not(feature = "stm32f405"))]
-impl Flash for NoMemory {
+impl autopilot::Flash for NoMemory {
     const RECORDS: usize = 0;
 
     fn read(&self, _: usize, _: usize) -> [u8; autopilot::RECORD] {
