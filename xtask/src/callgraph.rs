@@ -3,7 +3,6 @@
 //! whoever compiled them.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
@@ -91,12 +90,6 @@ impl CallGraph {
             }
         }
         seen
-    }
-
-    /// Where the functions are whose names contain `part`.
-    pub fn named(&self, part: &str) -> Vec<Range<u32>> {
-        let named = self.0.iter().filter(|(_, function)| function.name.contains(part));
-        named.map(|(&entry, function)| entry..entry + function.size).collect()
     }
 
     /// Code and literals of these functions, bytes.

@@ -7,7 +7,6 @@ use anyhow::{Result, ensure};
 use comfy_table::{CellAlignment, Table, presets::UTF8_FULL_CONDENSED};
 use serde::{Deserialize, Serialize};
 
-use crate::cycles::Cycles;
 use crate::image::Image;
 
 /// Instructions of the fastest and the slowest step, and in the mean, rounded up.
@@ -45,8 +44,6 @@ pub struct Case {
 pub struct Report {
     /// By case.
     pub instructions: BTreeMap<String, Extremes>,
-    /// Modelled of the slowest step traced, by case.
-    pub cycles: BTreeMap<String, Cycles>,
     /// Code of a step on the paper's circle with everything it can call, bytes.
     pub code_bytes: u32,
     /// The same by case.
@@ -89,11 +86,6 @@ impl Report {
             compare(&format!("{name}, most instructions"), extremes.worst, before.map(|before| before.worst));
             compare(&format!("{name}, instructions in the mean"), extremes.mean, before.map(|before| before.mean));
         }
-        for (name, cycles) in &self.cycles {
-            let before = expected.cycles.get(name);
-            compare(&format!("{name}, cycles"), cycles.zero_wait, before.map(|before| before.zero_wait));
-            compare(&format!("{name}, cycles from flash"), cycles.flash, before.map(|before| before.flash));
-        }
         for (name, &bytes) in &self.code_bytes_by_case {
             let before = expected.code_bytes_by_case.get(name);
             compare(&format!("{name}, bytes of code"), bytes.into(), before.map(|&before| before.into()));
@@ -122,33 +114,20 @@ pub fn table(image: &Image, cases: &[Case], report: &Report) -> String {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
     let cores = cases.first().map_or(&[][..], |case| &case.identical);
-    let mut header: Vec<String> = [
-        "case",
-        "instructions, best",
-        "worst",
-        "mean",
-        "cycles",
-        "from flash",
-        "code, B",
-        "stack, B",
-        "bound, B",
-        "state, B",
-    ]
-    .map(str::to_owned)
-    .to_vec();
+    let mut header: Vec<String> =
+        ["case", "instructions, best", "worst", "mean", "code, B", "stack, B", "bound, B", "state, B"]
+            .map(str::to_owned)
+            .to_vec();
     header.extend(cores.iter().map(|(core, _)| format!("{core} = host")));
     let columns = header.len();
     table.set_header(header);
     for case in cases {
         let Extremes { best, worst, mean } = case.instructions;
-        let Cycles { zero_wait, flash } = report.cycles.get(&case.name).copied().unwrap_or_default();
         let mut row = vec![
             case.name.clone(),
             best.to_string(),
             worst.to_string(),
             mean.to_string(),
-            zero_wait.to_string(),
-            flash.to_string(),
             case.code_bytes.to_string(),
             case.stack_painted.to_string(),
             case.stack_bound.to_string(),
@@ -184,7 +163,6 @@ mod tests {
     fn report(worst: u64) -> Report {
         Report {
             instructions: BTreeMap::from([("circle".to_owned(), Extremes { best: 10, worst, mean: 10 })]),
-            cycles: BTreeMap::new(),
             code_bytes: 1000,
             code_bytes_by_case: BTreeMap::from([("circle".to_owned(), 1000)]),
             ram_bytes: 100,

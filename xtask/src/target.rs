@@ -23,8 +23,7 @@ pub fn run(json: bool, refresh: bool) -> Result<()> {
     let outputs = MACHINES.map(|(core, machine)| emulator::bench(machine, &image.path).map(|output| (core, output)));
     let outputs = outputs.into_iter().collect::<Result<Vec<_>>>()?;
     let rows = rows(&image, &outputs)?;
-    let report =
-        Report { cycles: crate::cycles::measure(&image, &entries(&outputs))?, ..summary(&image, &rows, &outputs) };
+    let report = summary(&image, &rows, &outputs);
 
     if json {
         println!("{}", serde_json::to_string(&report)?);
@@ -46,12 +45,6 @@ pub fn run(json: bool, refresh: bool) -> Result<()> {
     report.check_against(&expected).with_context(|| format!("worse than {} allows", path.display()))
 }
 
-/// The cases and the entries of their steps.
-fn entries(outputs: &[(&str, Output)]) -> Vec<(String, u32)> {
-    let cases = outputs.iter().take(1).flat_map(|(_, output)| &output.cases);
-    cases.map(|(name, measured)| (name.clone(), measured.entry)).collect()
-}
-
 /// Digests of the same cases on the host.
 #[derive(Default)]
 struct Host(BTreeMap<String, u64>);
@@ -59,7 +52,7 @@ struct Host(BTreeMap<String, u64>);
 impl Visitor for Host {
     fn visit<C: Case>(&mut self, name: &str, case: Option<C>) {
         if let Some(mut case) = case {
-            self.0.insert(name.to_owned(), cases::exercise(&mut case, cases::STATES, C::step).value());
+            self.0.insert(name.to_owned(), cases::exercise(&mut case, C::step).value());
         }
     }
 }
@@ -99,7 +92,6 @@ fn summary(image: &Image, rows: &[Row], outputs: &[(&str, Output)]) -> Report {
     let code: BTreeMap<String, u32> = rows.iter().map(|row| (row.name.clone(), row.code_bytes)).collect();
     Report {
         instructions: rows.iter().map(|row| (row.name.clone(), row.instructions)).collect(),
-        cycles: BTreeMap::new(),
         code_bytes: code.get(PLAIN).copied().unwrap_or(0),
         code_bytes_by_case: code,
         ram_bytes_by_case: rows.iter().map(|row| (row.name.clone(), row.ram_bytes)).collect(),

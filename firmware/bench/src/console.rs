@@ -2,17 +2,6 @@
 //! and its panics.
 
 use cortex_m_semihosting::hio::{self, HostStream};
-use cortex_m_semihosting::{nr, syscall};
-
-/// Whether the host passed this program an argument, of any kind.
-pub fn has_argument() -> bool {
-    let mut text = [0_u8; 256];
-    let mut block = [text.as_mut_ptr() as usize, text.len()];
-    // SAFETY: the call writes into `text`, and how much of it into `block`; both are live.
-    let failed = unsafe { syscall!(GET_CMDLINE, &mut block) };
-    // The first word is the image's name.
-    failed == 0 && text.iter().take(block[1]).any(|&byte| byte == b' ')
-}
 
 /// The host's standard output through semihosting.
 pub struct Console(HostStream);

@@ -24,13 +24,9 @@ struct Extremes {
     steps: u64,
 }
 
-/// States that a case is run on while each instruction is traced.
-const FEW: usize = 8;
-
 struct Bench {
     probe: Probe,
     console: Console,
-    states: usize,
 }
 
 impl Visitor for Bench {
@@ -41,7 +37,7 @@ impl Visitor for Bench {
             return;
         };
         let mut extremes = Extremes { best: u32::MAX, worst: 0, stack: 0, total: 0, steps: 0 };
-        let digest = cases::exercise(&mut case, self.states, |case, state| {
+        let digest = cases::exercise(&mut case, |case, state| {
             let (output, cost) = self.probe.measure(step::<C>, case, state);
             extremes.best = extremes.best.min(cost.instructions);
             extremes.worst = extremes.worst.max(cost.instructions);
@@ -76,9 +72,7 @@ extern "C" fn step<C: Case>(case: &mut C, state: &C::State) -> C::Output {
 fn main() -> ! {
     let status = match (Console::open(), Probe::start()) {
         (Some(console), Some(probe)) => {
-            // With an argument it is traced, which takes too long for all.
-            let states = if console::has_argument() { FEW } else { cases::STATES };
-            let mut bench = Bench { probe, console, states };
+            let mut bench = Bench { probe, console };
             cases::visit_all(&mut bench);
             bench.console.number("roots", cases::roots().value());
             bench.console.end();

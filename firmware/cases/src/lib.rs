@@ -59,16 +59,12 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("load-filter-and-navigation", LoadAndNavigation::new());
 }
 
-/// Runs `case` on the first `states` of [`STATES`] random states through `step`, two steps each: the first as after
+/// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after
 /// engaging, the second with a last command to predict from. Returns the digest of all commands.
-pub fn exercise<C: Case>(
-    case: &mut C,
-    states: usize,
-    mut step: impl FnMut(&mut C, &C::State) -> C::Output,
-) -> Digest {
+pub fn exercise<C: Case>(case: &mut C, mut step: impl FnMut(&mut C, &C::State) -> C::Output) -> Digest {
     let mut random = Random::new(20);
     let mut digest = Digest::default();
-    for _ in 0..states {
+    for _ in 0..STATES {
         let state = case.prepare(&mut random);
         for _ in 0..2 {
             let output = step(case, &state);
