@@ -50,7 +50,13 @@ impl<T: Real> Glide<T> {
             }
         }
         if has_jumped {
-            let square = self.rest.dot(&self.rest).max(T::lit(LEAST * LEAST));
+            let (rest, rate) = (self.rest.dot(&self.rest), self.rate.dot(&self.rate));
+            // Jump upon jump: there is no place to glide from.
+            if !(rest.max(rate) < T::lit(MOST * MOST)) {
+                *self = Self::none();
+                return;
+            }
+            let square = rest.max(T::lit(LEAST * LEAST));
             self.per_time = (T::lit(ACCELERATION) / square.sqrt()).sqrt().min(T::lit(1.0 / TIME));
         }
     }
@@ -89,6 +95,16 @@ mod tests {
             // is 5e-4 at 10 τ.
             assert!((fastest * time / size - (-1.0_f64).exp()).abs() < 0.01, "{fastest}");
             assert!(glide.rest.amax() < 6e-4 * size, "{}", glide.rest);
+        }
+    }
+
+    #[test]
+    fn jumps_upon_jumps_do_not_pile_up() {
+        let mut glide = Glide::none();
+        for _ in 0..1000 {
+            glide.take(&Vector3::new(1.5, 0.0, 0.0), &Vector3::new(0.0, 1.5, 0.0));
+            glide.pass(PERIOD);
+            assert!(glide.rest.amax() < MOST && glide.rate.amax() < MOST);
         }
     }
 
