@@ -71,7 +71,6 @@ fn a_mission_from_ground_to_ground_is_the_same_on_every_emulated_board() {
     for (machine, image) in images() {
         let mut target = emulated(machine, image, OPTIONS);
         target.prepare(&mission::scenario()).unwrap();
-        target.stand();
         let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
         assert_eq!(there, here, "on {machine}");
     }

@@ -42,7 +42,6 @@ fn a_mission_from_ground_to_ground_is_the_same_over_the_link() {
     mission::check(&here);
     let mut target = soft_target(OPTIONS, |stream| stream).unwrap();
     target.prepare(&mission::scenario()).unwrap();
-    target.stand();
     let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
     assert_eq!(there, here);
 }

@@ -163,13 +163,8 @@ impl Target {
         Ok(())
     }
 
-    /// Its next state finds the vehicle on the ground, from where what is asked for takes off.
-    pub fn stand(&mut self) {
-        self.begin = Begin::Standing;
-    }
-
-    /// The command for the hold that begins at `t_s`, from what is measured then, of a target that is
-    /// asked for `request`. Once it has landed, that is none.
+    /// The command for the hold that begins at `t_s`, from what is measured then, of a target that
+    /// is asked for `request`. Once it has landed, that is none.
     ///
     /// # Errors
     /// The target's, or the line's.
