@@ -2,4 +2,5 @@
 
 mod courses;
 mod flight;
+mod gusts;
 mod law;

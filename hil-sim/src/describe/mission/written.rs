@@ -17,11 +17,16 @@ pub struct Defaults {
     pub is_closed: bool,
 }
 
-/// The law that the built-in routes are flown with.
+/// The law that the built-in routes are flown with, for a state that is known without delay.
 const CONTROLLER: &str = "[controller]
 rate_hz = 500.0
-poles = [[-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5, -6], [-1, -2, -3, -4, -5], [-2, -3]]
-observer = { payload = 4.0, rod = 4.0, torque = 4.0 }
+poles = [
+    [-1.5, -3.0, -4.5, -6.0, -7.5, -9.0],
+    [-1.5, -3.0, -4.5, -6.0, -7.5, -9.0],
+    [-1.5, -3.0, -4.5, -6.0, -7.5],
+    [-3.0, -4.5],
+]
+observer = { payload = 8.0, rod = 8.0, torque = 8.0 }
 ";
 
 /// A mission as a scenario that flies it, for `duration_s`, from rest at its beginning.
