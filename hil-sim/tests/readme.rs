@@ -20,6 +20,17 @@ fn its_scenario_is_valid_and_flies() {
 }
 
 #[test]
+fn its_mission_takes_off_and_lands() {
+    let (_, rest) = README.split_once("## From the ground to the ground").expect("the section");
+    let (_, rest) = rest.split_once("```toml\n").expect("a scenario");
+    let (text, _) = rest.split_once("```").expect("its end");
+    let scenario = Scenario::parse("README.md", text).unwrap_or_else(|error| panic!("{error}"));
+    let flight = fly_simply(&scenario, Arithmetic::F32).unwrap();
+    assert!(matches!(flight.end, End::Landed(_)), "{:?}", flight.end);
+    assert!(flight.results.uav_touchdown_m_s.unwrap() < 0.6 && flight.results.load_touchdown_m_s.unwrap() < 0.6);
+}
+
+#[test]
 fn its_costs_are_the_expected_ones() {
     let expected: serde_json::Value =
         serde_json::from_str(include_str!("../../firmware/bench/expected.json")).expect("JSON");

@@ -143,6 +143,14 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&mut self.law, supervisor => supervisor.take_over(state, applied))
     }
 
+    /// Starts on the path at once from where the vehicle flies, continuing what was `applied`.
+    ///
+    /// # Errors
+    /// The state or command is refused; nothing has changed.
+    pub fn start_from(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
+        either!(&mut self.law, supervisor => supervisor.start_from(state, applied))
+    }
+
     /// Wishes for another factor of the path's speed, which changes smoothly: 1 flies the prescribed
     /// speed, 0 stops, less goes back. The tracking law has none.
     pub fn set_speed_factor(&mut self, factor: T) {

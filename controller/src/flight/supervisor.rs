@@ -195,6 +195,19 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         Ok(())
     }
 
+    /// Starts on the path from where the vehicle flies, to which `applied` has been applied until now:
+    /// [`Mode::Follow`] without an approach, and without a bump.
+    ///
+    /// # Errors
+    /// As [`take_over`](Self::take_over).
+    pub fn start_from(&mut self, state: &State<T>, applied: Command<T>) -> Result<(), Refused> {
+        self.take_over(state, applied)?;
+        self.law.restart(state);
+        self.request = Request::Follow;
+        self.mode = Mode::Follow;
+        Ok(())
+    }
+
     /// Changes what the actuators can apply, in flight too: less than hover's thrust may then be
     /// the truth.
     ///

@@ -81,10 +81,14 @@ fn shard(text: &str) -> Result<Shard, String> {
 pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     let file = arguments.file.as_deref().unwrap_or(Path::new("campaign"));
     let name = file.display().to_string();
-    let text = match (std::fs::read_to_string(file), campaign::builtin(&name)) {
-        (Ok(text), _) => text,
-        (Err(error), Some(text)) if error.kind() == io::ErrorKind::NotFound => text.to_owned(),
-        (Err(error), _) => return Err(format!("{name}: {error}").into()),
+    let built_in = || campaign::builtin(&name).map(str::to_owned);
+    let text = match arguments.file.as_deref().map(std::fs::read_to_string) {
+        None => built_in().ok_or("no campaign is built in")?,
+        Some(Ok(text)) => text,
+        Some(Err(error)) => match built_in().filter(|_| error.kind() == io::ErrorKind::NotFound) {
+            Some(text) => text,
+            None => return Err(format!("{name}: {error}").into()),
+        },
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     let runs = arguments.runs.unwrap_or(campaign.runs);

@@ -32,6 +32,8 @@ pub struct Pilot<T: Real> {
     rig: Box<Rig<T, FlownPath<T>>>,
     /// Of the tracking law.
     reference: Option<ReferenceSpec>,
+    /// A law alone does not join its path, it flies.
+    joins: bool,
 }
 
 /// One answer of a pilot.
@@ -107,7 +109,7 @@ impl<T: Real> Pilot<T> {
             Law::Follow { .. } => None,
             Law::Track { reference, .. } => Some(reference),
         };
-        Ok(Self { rig: Box::new(rig), reference })
+        Ok(Self { rig: Box::new(rig), reference, joins: spec.supervised })
     }
 
     /// The command for the hold that begins at `t_s`, from what is read then.
@@ -156,7 +158,8 @@ impl<T: Real> Answers for Pilot<T> {
 
     fn take_over(&mut self, state: &State<f64>, applied: &Command<f64>) {
         // A refused state leaves the law as it was, which the flight then shows.
-        let _ = self.rig.take_over(&state.cast(), applied.cast());
+        let (state, applied) = (state.cast(), applied.cast());
+        let _ = if self.joins { self.rig.take_over(&state, applied) } else { self.rig.start_from(&state, applied) };
     }
 
     fn set_speed_factor(&mut self, factor: f64) {
