@@ -257,8 +257,10 @@ impl<T: Real> Actuators<T> {
     pub(crate) fn in_flight(&self) -> impl Iterator<Item = (T, Command<T>)> {
         let steps = self.delay.min(STEPS);
         let mut acting = self.applied;
+        // There is no step without steps, which the compiler does not see.
+        let passed = move |index: usize| (self.delay * index).checked_div(steps).unwrap_or(0);
         (0..steps).map(move |index| {
-            let (begin, end) = (self.delay * index / steps, self.delay * (index + 1) / steps);
+            let (begin, end) = (passed(index), passed(index + 1));
             let mut sum = Command::zero();
             for period in begin..end {
                 let command = self.sent(self.delay - 1 - period);
