@@ -42,10 +42,10 @@ const CONE: f64 = 0.7;
 /// Vertical force: at least this share of the UAV's weight, at most this of all weight.
 const LEAST_LIFT: f64 = 0.4;
 const MOST_LIFT: f64 = 2.0;
-/// A rod that stands on its head, within 8°, may be in balance: as if it hung so far aside, m, the
-/// UAV yields and topples it.
+/// A rod that stands on its head, within 8°, may be in balance: as if it hung so far aside, m, and
+/// moved as fast, m/s, the UAV yields and topples it.
 const BALANCED: f64 = -0.99;
-const TOPPLING: f64 = 0.5;
+const TOPPLING: f64 = 0.6;
 /// k_R, 1/s², and k_ω, 1/s: 6 rad/s, critically damped; yaw rate, 1/s.
 const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
@@ -211,11 +211,13 @@ impl<T: Real> Swing<T> {
     /// Of the rod of `state`, where it hangs.
     pub(crate) fn of(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
         let length = vehicle.params().rod_length;
-        let mut offset = state.rod * (length * state.rod.z.max(T::zero()));
+        let mut swing =
+            Self { offset: state.rod * (length * state.rod.z.max(T::zero())), rate: state.rod_rate * length };
         if state.rod.z < T::lit(BALANCED) {
-            offset.x = T::lit(TOPPLING);
+            swing.offset.x = T::lit(TOPPLING);
+            swing.rate.x += T::lit(TOPPLING);
         }
-        Self { offset, rate: state.rod_rate * length }
+        swing
     }
 }
 
