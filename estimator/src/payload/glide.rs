@@ -52,7 +52,7 @@ impl<T: Real> Glide<T> {
         if has_jumped {
             let (rest, rate) = (self.rest.dot(&self.rest), self.rate.dot(&self.rate));
             // Jump upon jump: there is no place to glide from.
-            if !(rest.max(rate) < T::lit(MOST * MOST)) {
+            if rest.max(rate) >= T::lit(MOST * MOST) {
                 *self = Self::none();
                 return;
             }

@@ -106,7 +106,7 @@ enum Command {
         /// negative number, …), and say which and where; RUST_BACKTRACE=1 says how it came to it.
         #[arg(long)]
         trap: bool,
-        /// Fly even what asks more of the vehicle than its [limits] or its actuators allow.
+        /// Fly even what asks more of the vehicle than its limits or its actuators allow.
         #[arg(long)]
         unchecked: bool,
         #[command(flatten)]

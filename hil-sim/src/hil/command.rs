@@ -51,7 +51,7 @@ pub struct Arguments {
     /// Fly by the target's own timer and the clock on the wall, not in lockstep.
     #[arg(long)]
     pub real_time: bool,
-    /// Fly even what asks more of the vehicle than its [limits] or its actuators allow.
+    /// Fly even what asks more of the vehicle than its limits or its actuators allow.
     #[arg(long)]
     pub unchecked: bool,
     /// Do not ask for ξ, ν, margins and what the observers found, which come with the samples that
