@@ -365,7 +365,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
     #[inline]
     pub(crate) fn sample(&mut self, sampled: &State<T>) -> Ahead<T> {
-        self.memory.last = *sampled;
+        remember(&mut self.memory.last, sampled);
         let (dt, observer, actuators) = (self.memory.rest, &mut self.memory.observer, &self.memory.actuators);
         let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
         let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
@@ -384,19 +384,18 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let mean = after + per_newton_metre.component_mul(&drift.torque);
         let (attitude, body_rate) = turn(attitude, body_rate, &mean, dt);
 
-        let state = State { position, velocity, rod, rod_rate, attitude, body_rate };
         let zeta = propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.half_hold);
-        let mut ahead = Ahead { state, horizon: self.memory.horizon, zeta };
+        let horizon = self.memory.horizon;
         if self.memory.expected.is_some() {
-            self.fly_through(sampled, &mut ahead.state);
+            return Ahead { state: self.fly_through(sampled), horizon, zeta };
         }
-        ahead
+        Ahead { state: State { position, velocity, rod, rod_rate, attitude, body_rate }, horizon, zeta }
     }
 
-    /// Looks ahead through the commands in flight: the model, and the disturbances at their rates,
-    /// in a fixed number of steps (11.10).
+    /// The state ahead, through the commands in flight: the model, and the disturbances at their
+    /// rates, in a fixed number of steps (11.10).
     #[inline(never)]
-    fn fly_through(&mut self, sampled: &State<T>, ahead: &mut State<T>) {
+    fn fly_through(&mut self, sampled: &State<T>) -> State<T> {
         let Memory { weighed, period, rest, actuators, observer, .. } = &self.memory;
         let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
         let coming = (*rest, actuators.arriving().plus(&actuators.drift()));
@@ -404,8 +403,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
             in_flight.chain([coming]).fold((*sampled, *observer.estimate()), |(state, known), (time, mean)| {
                 pass(weighed, &state, &known, &mean, time)
             });
-        *ahead = state;
         self.memory.expected = Some(expected);
+        state
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
@@ -468,4 +467,22 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     pub fn period(&self) -> T {
         self.memory.period
     }
+}
+
+/// Copies a state number by number: as a block it would be copied by a call, at three times the
+/// cost.
+#[inline(always)]
+fn remember<T: Real>(last: &mut State<T>, state: &State<T>) {
+    let State { position, velocity, rod, rod_rate, attitude, body_rate } = state;
+    let pairs = [
+        (&mut last.position, position),
+        (&mut last.velocity, velocity),
+        (&mut last.rod, rod),
+        (&mut last.rod_rate, rod_rate),
+        (&mut last.body_rate, body_rate),
+    ];
+    for (to, from) in pairs {
+        to.iter_mut().zip(from.iter()).for_each(|(to, from)| *to = *from);
+    }
+    last.attitude.iter_mut().zip(attitude.iter()).for_each(|(to, from)| *to = *from);
 }
