@@ -234,8 +234,9 @@ fn an_estimator_that_has_stopped_gives_no_states() {
     fly(&mut station.autopilot, 1);
     station.news();
     let mut again = |sequence: u32| {
-        let frame = frame(2 * sequence);
-        station.autopilot.receive(&frame);
+        // The same state at another time.
+        let LOAD_STATE_DATA { time_usec, .. } = frame(2 * sequence);
+        station.autopilot.receive(&LOAD_STATE_DATA { time_usec, sequence: 2 * sequence, ..frame(2) });
         station.autopilot.tick();
         (station.autopilot.mode(), station.news())
     };

@@ -917,7 +917,7 @@ pub const SECTIONS: &[Section] = &[
                 "Each period is uniform within this part of the nominal one, either way.",
             ),
             key("missed", "", Number(0.0, 0.9), "0.0", "Probability that no state comes in a control period."),
-            key("state_every", "", Number(1.0, 1000.0), "1", "Control periods from one state to the next."),
+            key("state_every", "", Whole(1, 1000), "1", "Control periods from one state to the next."),
         ],
     },
 ];
