@@ -79,9 +79,9 @@ impl<'a, T: Real> Model<'a, T> {
     /// q̈ under `thrust` (N) and δ, and its change with a newton more.
     #[inline]
     pub fn rod(&self, thrust: T, delta: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
-        let q = &self.state.rod;
-        let b3: Vector3<T> = self.state.attitude.column(2).into();
-        let per_newton = (b3 - q * self.along) * self.vehicle.kappa_per_thrust();
+        let (q, r) = (&self.state.rod, &self.state.attitude);
+        // Not as a column, which is a slice whose pointer some compilations check for null.
+        let per_newton = (Vector3::new(r.m13, r.m23, r.m33) - q * self.along) * self.vehicle.kappa_per_thrust();
         (delta - q * self.turning + per_newton * thrust, per_newton)
     }
 
