@@ -460,8 +460,9 @@ impl Autopilot {
 
     /// A state for the coming control period: flight and real time. One from another time than the
     /// last, earlier or seconds later, is refused; but for the third in a row that agree on
-    /// another, which is that of a clock that has restarted. In flight so is one that is the last
-    /// again: an estimator that has stopped.
+    /// another, which is that of a clock that has restarted. Of a real vehicle in flight so is one
+    /// that is the last again: an estimator that has stopped. A simulated one can be at rest to the
+    /// bit.
     pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
         if !self.epoch.accept(frame.time_usec) {
             self.counters.refused = self.counters.refused.wrapping_add(1);
@@ -471,7 +472,7 @@ impl Autopilot {
         let mut frame = frame.clone();
         let state = Seen::of(&frame).state;
         if state.is_some() {
-            let is_again = self.newest == state && self.is_flying();
+            let is_again = self.newest == state && self.drive() == Drive::Flight && self.is_flying();
             self.newest = state;
             if is_again {
                 frame.seen |= LoadSeen::LOAD_SEEN_NO_LOAD;
