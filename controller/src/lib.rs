@@ -50,17 +50,18 @@ mod law;
 mod path;
 pub mod ranges;
 mod sampled;
+mod sampling;
 pub mod theory;
 
 pub use error::{Refused, SetupError};
-pub use flight::approach::{Approach, ApproachLimits, Pace};
 pub use flight::envelope::{Band, Envelope, EnvelopeParams, Standing};
 pub use flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 pub use flight::supervisor::Supervisor;
+pub use law::approach::{Approach, ApproachLimits, Pace};
 pub use law::compensator::{continuing, propagate};
 pub use law::follow::{Follow, Gains, Xi, follow};
 pub use law::gains::{GainError, Pole, is_hurwitz, place};
-pub use law::lift::{Lift, PositionSeries, lift};
+pub use law::lift::{Lift, lift};
 pub use law::lower::lower;
 pub use law::margins::{Margin, Margins};
 pub use law::solution::Solution;
@@ -72,7 +73,8 @@ pub use sampled::actuator::{Actuation, ActuatorLimits, MAX_DELAY};
 pub use sampled::allocation::{Allocation, Place, RotorParams, Rotors};
 pub use sampled::controller::{Controller, Follower, Tracker};
 pub use sampled::observer::ObserverParams;
-pub use sampled::sampler::{Sampler, Sampling};
+pub use sampled::sampler::Sampler;
+pub use sampling::Sampling;
 
 /// The README's example, as it stands there.
 #[cfg(doctest)]

@@ -4,12 +4,12 @@ use model::{Command, Disturbance, OutOfRange, Real, State, Uav, is_within};
 use nalgebra::Vector3;
 
 use crate::error::Refused;
-use crate::flight::approach::{ApproachLimits, Pace};
 use crate::flight::cable::{Cable, SHORTENED, Watching};
 use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
 use crate::flight::landing::{Aim, Landing};
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 use crate::flight::payload::Payload;
+use crate::law::approach::{ApproachLimits, Pace};
 use crate::law::hold::{Hold, Swing};
 use crate::law::margins::{Margin, Margins};
 use crate::law::solution::Solution;

@@ -7,17 +7,17 @@
 use model::{Disturbance, OutOfRange, Real, State, Vehicle, Yaw};
 
 use crate::error::Refused;
-use crate::flight::approach::{Approach, Pace};
-use crate::flight::speed_factor::SpeedFactor;
+use crate::law::approach::{Approach, Pace};
 use crate::law::gains::{self, GainError};
 use crate::law::lift::{Lift, lift};
 use crate::law::lower::lower;
 use crate::law::margins::Margins;
 use crate::law::solution::{Solution, dot};
+use crate::law::speed_factor::SpeedFactor;
 use crate::law::{Ahead, Law};
 use crate::path::{Outputs, Path};
 use crate::ranges::BANDWIDTH;
-use crate::sampled::sampler::Sampling;
+use crate::sampling::Sampling;
 
 /// The gains of (5.3), low order first: ν = −K ξ − (K̃ ξ̃, 0).
 ///

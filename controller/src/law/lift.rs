@@ -18,9 +18,7 @@
 use model::{Disturbance, Real, Series, State, Vehicle};
 use nalgebra::Vector3;
 
-/// The payload's coordinates p1, p2, p3 as series of order 6 in time. The sixth coefficient is
-/// zero: that order holds the input, which outputs see only through their gradients.
-pub type PositionSeries<T> = [Series<T, 7>; 3];
+use crate::path::PositionSeries;
 
 /// The payload's motion to fifth order, with what [`lower`](crate::law::lower::lower) needs to go
 /// back.

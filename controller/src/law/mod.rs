@@ -1,5 +1,6 @@
 //! Laws in continuous time, and what they are made of.
 
+pub(crate) mod approach;
 pub(crate) mod compensator;
 pub(crate) mod follow;
 pub(crate) mod gains;
@@ -8,12 +9,13 @@ pub(crate) mod lift;
 pub(crate) mod lower;
 pub(crate) mod margins;
 pub(crate) mod solution;
+pub(crate) mod speed_factor;
 pub(crate) mod track;
 
 use model::{Disturbance, Real, State, Vehicle};
 
 use crate::error::Refused;
-use crate::flight::approach::{Approach, Pace};
+use approach::{Approach, Pace};
 use solution::Solution;
 
 /// Where a law is to be evaluated: at the instant its command acts.

@@ -7,13 +7,14 @@ use model::{Command, Disturbance, OutOfRange, Real, Series, State, Vehicle, Yaw}
 use nalgebra::Vector3;
 
 use crate::error::Refused;
-use crate::flight::approach::{Approach, Pace};
+use crate::law::approach::{Approach, Pace};
 use crate::law::gains::{self, GainError};
-use crate::law::lift::{Lift, PositionSeries, lift};
+use crate::law::lift::{Lift, lift};
 use crate::law::lower::lower;
 use crate::law::margins::Margins;
 use crate::law::solution::{Solution, dot};
 use crate::law::{Ahead, Law};
+use crate::path::PositionSeries;
 use crate::ranges::BANDWIDTH;
 
 /// Gains of the tracking law, low order first.

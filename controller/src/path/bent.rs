@@ -2,7 +2,7 @@
 
 use model::{Analytic, OutOfRange, Real, Series};
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::draped;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{BENT_HALF_AXIS_A, BENT_HALF_AXIS_B, HEIGHT};

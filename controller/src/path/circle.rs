@@ -3,7 +3,7 @@
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::curve::velocity;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{P3, RADIUS};

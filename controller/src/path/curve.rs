@@ -3,7 +3,7 @@
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::{ConstantSpeed, FixedYaw, Profiled, SpeedProfile};
 
 /// Where a payload is with respect to a curve, along its Taylor series.

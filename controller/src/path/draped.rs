@@ -8,8 +8,8 @@
 use model::{Analytic, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
 use crate::path::Located;
+use crate::path::PositionSeries;
 use crate::path::curve::{norm_squared, velocity};
 
 /// Locates the payload from h1 and h2, the outline's gradient (F1, F2), the product with H′ (which

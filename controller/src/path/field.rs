@@ -3,7 +3,7 @@
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::{Formula, Located, SpeedProfile, YawProfile};
 use crate::ranges::{LINEAR_GRADIENT, LINEAR_VALUE, POINTING};
 

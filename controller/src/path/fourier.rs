@@ -4,7 +4,7 @@
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::curve::{dot, norm_squared, now, velocity};
 use crate::path::nearest::{Advance, Local, Nearest, solve, track};
 use crate::path::{Curve, Curved, Harmonics, Located};

@@ -2,7 +2,7 @@
 
 use model::{Analytic, Dual, Real, Series, variables};
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::curve::{cross, now};
 use crate::path::{Curve, Curved, Located};
 

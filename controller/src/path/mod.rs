@@ -54,7 +54,9 @@ pub use yaw::{AlongTangent, FixedYaw, YawProfile};
 use model::{Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+/// The payload's coordinates p1, p2, p3 as series of order 6 in time. The sixth coefficient is
+/// zero: that order holds the input, which outputs see only through their gradients.
+pub type PositionSeries<T> = [Series<T, 7>; 3];
 
 /// The outputs (3.3) along the payload's series, with the input's contribution to the highest
 /// orders left out.

@@ -10,7 +10,7 @@
 use model::{Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 
 /// Orders of p(t), hence of σ(t).
 const N: usize = 7;

@@ -2,7 +2,7 @@
 
 use model::{Analytic, OutOfRange, Real, Series};
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::{Curved, Located};
 use crate::ranges::{CENTRIPETAL, SPEED};
 

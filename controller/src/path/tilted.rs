@@ -3,7 +3,7 @@
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::{Curve, Curved, Located};
 use crate::ranges::{COORDINATE, HALF_AXIS_A, HALF_AXIS_B};
 

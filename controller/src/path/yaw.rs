@@ -2,8 +2,8 @@
 
 use model::{Analytic, OutOfRange, Real, Series};
 
-use crate::law::lift::PositionSeries;
 use crate::path::Located;
+use crate::path::PositionSeries;
 use crate::ranges::YAW;
 
 /// The yaw ψ_d prescribed along a curve, as a function of position.

@@ -5,6 +5,7 @@ use model::{Command, OutOfRange, Real};
 use nalgebra::Vector3;
 
 use crate::ranges::{MAX_THRUST, MAX_TORQUE, MIN_THRUST};
+use crate::sampling::led;
 
 /// What turns a command into thrust and torque. The law's memory goes on from what it says was
 /// applied, so nothing winds up.
@@ -100,10 +101,6 @@ const SLOTS: usize = MAX_DELAY + 1;
 
 /// Model steps at most over a latency: at 60 ms no step is longer than 8 ms.
 const STEPS: usize = 8;
-/// Shortest time constant that the lead leaves of the rotors' lag, s, and the most by which it
-/// amplifies a command's step.
-const LED_LAG: f64 = 0.01;
-const MOST_LEAD: f64 = 5.0;
 
 /// A delay line of whole periods, then a first-order lag (11.6): the commands' way to thrust and
 /// torque. A lag is led (11.9): what is sent goes beyond what is wanted, so that thrust and torque
@@ -167,11 +164,6 @@ impl<T: Real> Lag<T> {
         let missing = command.minus(from);
         (command.minus(&missing.times(self.decay)), from.plus(&missing.times(self.mean_share)))
     }
-}
-
-/// What the lead leaves of a `lag`, s.
-pub(crate) fn led<T: Real>(lag: T) -> T {
-    lag.min((lag * T::lit(1.0 / MOST_LEAD)).max(T::lit(LED_LAG)))
 }
 
 impl<T: Real> Actuators<T> {

@@ -3,15 +3,16 @@
 use model::{Command, Disturbance, Real, State, Vehicle};
 
 use crate::error::{Refused, SetupError};
-use crate::flight::approach::Pace;
 use crate::law::Law;
+use crate::law::approach::Pace;
 use crate::law::follow::{Follow, Gains};
 use crate::law::solution::Solution;
 use crate::law::track::{Reference, Track, TrackGains, TrackXi};
 use crate::path::Path;
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::observer::ObserverParams;
-use crate::sampled::sampler::{Sampler, Sampling};
+use crate::sampled::sampler::Sampler;
+use crate::sampling::Sampling;
 
 /// A law and the sampled memory it flies with.
 ///

@@ -18,66 +18,11 @@ use crate::law::compensator::{continuing, propagate};
 use crate::law::lift::lift;
 use crate::law::solution::Solution;
 use crate::law::{Ahead, Law};
-use crate::ranges::{LATENCY, MAX_THRUST, PERIOD, ROTOR_LAG};
-use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators, led};
+use crate::ranges::MAX_THRUST;
+use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
 use crate::sampled::observer::{Observer, ObserverParams};
 use crate::sampled::weight::Weight;
-
-/// When the law is called and when its command acts.
-///
-/// ```
-/// use controller::Sampling;
-///
-/// // 500 Hz, states 10 ms old when their command begins to act, motors of 30 ms.
-/// let sampling = Sampling { latency: 0.01, rotor_lag: 0.03, ..Sampling::every(0.002_f32) };
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampling<T> {
-    /// Control period h, s.
-    pub period: T,
-    /// Known time from the state's sample to its command's start, s, at most
-    /// [`MAX_DELAY`](crate::MAX_DELAY) periods.
-    pub latency: T,
-    /// Known time constant of the rotors' first-order lag, s.
-    pub rotor_lag: T,
-    /// Evaluate the law for when its command acts: `latency` + `rotor_lag` + h/2 ahead. Off, it is
-    /// evaluated at the sample.
-    pub look_ahead: bool,
-}
-
-impl<T: Real> Sampling<T> {
-    /// Every `period` s, no latency, no lag, looking ahead.
-    pub fn every(period: T) -> Self {
-        Self { period, latency: T::zero(), rotor_lag: T::zero(), look_ahead: true }
-    }
-
-    /// The same in another scalar, rounded to nearest. Host-side use.
-    #[must_use]
-    pub fn cast<U: Real>(&self) -> Sampling<U> {
-        Sampling {
-            period: self.period.cast(),
-            latency: self.latency.cast(),
-            rotor_lag: self.rotor_lag.cast(),
-            look_ahead: self.look_ahead,
-        }
-    }
-
-    fn check(&self) -> Result<(), OutOfRange<T>> {
-        PERIOD.check(self.period)?;
-        LATENCY.check(self.latency)?;
-        ROTOR_LAG.check(self.rotor_lag)
-    }
-
-    /// Half a period where the law looks ahead.
-    pub(crate) fn half_hold(&self) -> T {
-        if self.look_ahead { self.period * T::lit(0.5) } else { T::zero() }
-    }
-
-    /// From the sample to when the law is evaluated for.
-    pub(crate) fn horizon(&self) -> T {
-        if self.look_ahead { self.latency + led(self.rotor_lag) + self.half_hold() } else { T::zero() }
-    }
-}
+use crate::sampling::Sampling;
 
 /// Time constant with which thrust and torque pass from what was applied before a take-over to the
 /// law's, s.

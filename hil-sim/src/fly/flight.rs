@@ -8,7 +8,7 @@ use controller::{Command, Request, State, Vector3};
 use super::pilot::{Answers, Decision};
 use super::sight::Sight;
 use super::touchdown::{Touchdown, Watch};
-use crate::describe::scenario::{Mission, Scenario};
+use crate::describe::scenario::{Requests, Scenario};
 use crate::world::Reading;
 use crate::world::{Body, Seed};
 
@@ -148,7 +148,7 @@ pub fn fly(
     let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
     let lost_m = LOST_M.max(2.0 * distance_of(&plan.start));
 
-    let mut mission = Mission::of(scenario);
+    let mut requests = Requests::of(scenario);
     let mut ground = Watch::new(scenario.ground, period);
     let mut zeta = controller.zeta;
     let mut has_begun = false;
@@ -183,7 +183,7 @@ pub fn fly(
             end = End::Crashed(t_s);
             break;
         }
-        let (request, factor) = mission.at(step);
+        let (request, factor) = requests.at(step);
         if let Some(factor) = factor {
             pilot.set_speed_factor(factor);
         }
@@ -224,7 +224,7 @@ pub fn fly(
             break;
         };
         watch(&Moment { decision: Some(&decision), sight: sight.as_ref(), ..seen });
-        if ground.has_landed(world.body(), request, decision.mode) && mission.is_over() {
+        if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() {
             end = End::Landed(t_s);
             break;
         }
@@ -249,7 +249,7 @@ pub fn fly(
             state: &state,
             body: world.body(),
             touchdown: &ground.touchdown,
-            request: mission.at(step).0,
+            request: requests.at(step).0,
             distance_m,
             decision: None,
             sight: None,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::json::Unique;
 use crate::describe::input::{Invalid, read};
-use crate::describe::scenario::{Mission, Scenario};
+use crate::describe::scenario::{Requests, Scenario};
 use crate::fly::fault::describe;
 use crate::fly::pilot::{Answers, Pilot};
 use crate::world::{Bodies, Reading};
@@ -38,7 +38,7 @@ pub struct Answer {
 /// The controller of a scenario at work in f32, on exact states.
 pub struct Controller {
     pilot: Pilot<f32>,
-    mission: Mission,
+    requests: Requests,
     /// A vehicle in flight is taken over from this.
     taken_over_from: Option<Command<f64>>,
     period: f64,
@@ -55,7 +55,7 @@ impl Controller {
         let hover = Command::of_thrust((told.payload_mass + told.uav_mass) * told.gravity);
         Ok(Self {
             pilot: Pilot::new(&scenario.controller)?,
-            mission: Mission::of(scenario),
+            requests: Requests::of(scenario),
             taken_over_from: (!scenario.standing).then_some(hover),
             period: 1.0 / scenario.controller.rate_hz,
             step: 0,
@@ -84,7 +84,7 @@ impl Controller {
             uav: Some(Uav { position, velocity, attitude, body_rate }),
             specific_force: seen.specific_force.map(Vector3::from),
         };
-        let (request, factor) = self.mission.at(self.step);
+        let (request, factor) = self.requests.at(self.step);
         if let Some(applied) = self.taken_over_from.take() {
             self.pilot.take_over(&reading.state, &applied);
         }

@@ -13,7 +13,7 @@ pub use table::{BEYOND, End, Knot, RouteTable, Run, Table};
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::curve::{dot, norm_squared, now, velocity};
 use crate::path::nearest::{Local, Nearest, newton, solve, track};
 use crate::path::spline::{POINTS, Weights};

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 use super::gains::{self, GainFields, PoleField};
-use super::mission::{AskedFields, requests};
+use super::requests::{AskedFields, requests};
 use super::{ControllerSpec, EstimatorSpec, Law, Obstacle, Scenario, steady};
 use crate::describe::course::{parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};

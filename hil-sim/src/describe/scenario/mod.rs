@@ -45,12 +45,12 @@ mod estimator;
 mod fields;
 mod gains;
 mod library;
-mod mission;
+mod requests;
 mod steady;
 
 pub use estimator::EstimatorSpec;
 pub use library::{CURVES, FIGURES, ROUTES, builtin};
-pub use mission::{Asked, Mission};
+pub use requests::{Asked, Requests};
 
 use controller::{
     ActuatorLimits, Command, Gains, ObserverParams, Request, Sampling, State, TrackGains, VehicleParams,

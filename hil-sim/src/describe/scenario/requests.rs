@@ -76,14 +76,14 @@ pub(super) fn requests(fields: Vec<AskedFields>, duration_s: f64) -> Result<Vec<
 
 /// The requests of a flight as its control periods pass.
 #[derive(Clone, Debug)]
-pub struct Mission {
+pub struct Requests {
     /// With the period from which they hold.
     requests: Vec<(u64, Asked)>,
     passed: usize,
     request: Request,
 }
 
-impl Mission {
+impl Requests {
     /// Of `scenario`: until the first request a vehicle that stands keeps its rotors off, and one in
     /// flight follows.
     #[must_use]

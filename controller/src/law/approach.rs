@@ -21,7 +21,7 @@ use model::{OutOfRange, Real, Series, State, Vehicle, Yaw};
 use nalgebra::Vector3;
 
 use crate::error::Refused;
-use crate::law::lift::PositionSeries;
+use crate::path::PositionSeries;
 use crate::path::{Outputs, Path};
 use crate::ranges::{
     APPROACH_ACCELERATION, APPROACH_MAX_THRUST, APPROACH_MIN_THRUST, APPROACH_ROD_ANGLE, APPROACH_SPEED,
