@@ -1,0 +1,129 @@
+//! Arming and its refusals, disarming, and the kill switches.
+
+use controller::{Actuation as _, Request};
+use rig::{Rig, SetupError, parameter};
+
+use super::{Autopilot, Drive, Notice};
+use crate::epoch::Epoch;
+use crate::failsafe::Loss;
+use crate::settings::Setting;
+
+/// Arming needs a state no older than this, s.
+const FRESH_S: f32 = 0.5;
+/// The kill pin counts when it is high for so many control steps in a row: no spike stops a flight.
+const PRESSED: u8 = 3;
+
+/// Why it is not armed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ArmRefused {
+    /// The parameters make no controller.
+    Setup(SetupError<f32>),
+    /// Limits and rotors give no more than this share of the hover thrust.
+    Weak(f32),
+    /// There has been no good state just now.
+    NoState,
+    /// Good states come this far apart, s, which is longer than `POL_COAST`, s.
+    Slow(f32, f32),
+    /// A kill switch is on.
+    Killed,
+    /// This is lost.
+    Lost(Loss),
+}
+
+impl ArmRefused {
+    /// Whether it may be armed as it is set up, but not now.
+    pub(crate) fn is_for_now(&self) -> bool {
+        !matches!(self, Self::Setup(_) | Self::Weak(_))
+    }
+}
+
+impl core::fmt::Display for ArmRefused {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Setup(error) => error.fmt(f),
+            Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
+            Self::NoState => f.write_str("not armed: no good state just now"),
+            Self::Slow(apart, most) => write!(f, "not armed: states {apart:.2} s apart, POL_COAST {most}"),
+            Self::Killed => f.write_str("not armed: the kill switch is on"),
+            Self::Lost(Loss::Station) => f.write_str("not armed: ground station lost"),
+            Self::Lost(Loss::Stick) => f.write_str("not armed: stick or radio lost"),
+            Self::Lost(Loss::Battery) => f.write_str("not armed: battery below FS_BAT_PCT"),
+        }
+    }
+}
+
+impl core::error::Error for ArmRefused {}
+
+impl Autopilot {
+    /// Makes the controller of the parameters as they are, to be started by the next good state.
+    /// Armed already, it does nothing.
+    ///
+    /// # Errors
+    /// Why not; it stays disarmed.
+    pub fn arm(&mut self) -> Result<(), ArmRefused> {
+        if !self.is_armed() {
+            let rig = Rig::new(self.settings.rig()).map_err(ArmRefused::Setup)?;
+            let share = rig.actuators().largest_thrust() / rig.vehicle().hover_thrust();
+            if share < self.settings.get(Setting::ARMING_THRUST) {
+                return Err(ArmRefused::Weak(share));
+            }
+            if self.is_killed() {
+                return Err(ArmRefused::Killed);
+            }
+            if let Some(loss) = Loss::ALL.into_iter().find(|loss| self.failsafe.is_lost(*loss, &self.settings)) {
+                return Err(ArmRefused::Lost(loss));
+            }
+            if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
+                return Err(ArmRefused::NoState);
+            }
+            let most = self.settings.rig().get(parameter!("POL_COAST"));
+            // One gap is no rate.
+            let apart_s = self.apart_s[0].min(self.apart_s[1]);
+            if self.drive() == Drive::Flight && apart_s > most {
+                return Err(ArmRefused::Slow(apart_s, most));
+            }
+            self.rig = Some(rig);
+            self.inbox = None;
+            self.epoch = Epoch::default();
+            self.newest = None;
+            self.blind_s = 0.0;
+            self.last = None;
+            self.until_telemetry = 0;
+        }
+        Ok(())
+    }
+
+    /// Rotors off. What was asked for is forgotten.
+    pub fn disarm(&mut self) {
+        self.stands &= !self.is_flying();
+        self.rig = None;
+        self.fault = None;
+        self.request = Request::Idle;
+        self.last = None;
+    }
+
+    /// The pilot's stick or radio lives; with its kill switch on, the rotors stop.
+    pub fn hear_stick(&mut self, kill: bool) {
+        self.failsafe.hear_stick();
+        self.kill = kill;
+        self.obey_kill();
+    }
+
+    /// Whether the board's kill pin is high, with which the rotors stop. To be called before each
+    /// control step.
+    pub fn sense_kill_pin(&mut self, is_high: bool) {
+        self.kill_pin = if is_high { (self.kill_pin + 1).min(PRESSED) } else { 0 };
+        self.obey_kill();
+    }
+
+    fn is_killed(&self) -> bool {
+        self.kill || self.kill_pin >= PRESSED
+    }
+
+    fn obey_kill(&mut self) {
+        if self.is_killed() && self.is_armed() {
+            self.disarm();
+            self.note(Notice::Killed);
+        }
+    }
+}

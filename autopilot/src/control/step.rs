@@ -1,0 +1,228 @@
+//! A control period: from the states that have come to the command.
+
+use controller::{Command, Mode, Request, State};
+use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, LoadSeen};
+use rig::{Output, Rig, parameter};
+
+use super::{Absence, Answer, Autopilot, Drive, Notice};
+use crate::report;
+use crate::seen::Seen;
+use crate::settings::Setting;
+
+impl Autopilot {
+    /// A state for the coming control period: flight and real time. One from another time than the
+    /// last, earlier or seconds later, is refused; but for the third in a row that agree on
+    /// another, which is that of a clock that has restarted. Of a real vehicle in flight so is one
+    /// that is the last again: an estimator that has stopped. A simulated one can be at rest to the
+    /// bit.
+    pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
+        if !self.epoch.accept(frame.time_usec) {
+            self.counters.refused = self.counters.refused.wrapping_add(1);
+            self.refused = Some(Absence::Stale);
+            return;
+        }
+        let mut frame = frame.clone();
+        let state = Seen::of(&frame).state;
+        if state.is_some() {
+            let is_again = self.newest == state && self.drive() == Drive::Flight && self.is_flying();
+            self.newest = state;
+            if is_again {
+                frame.seen |= LoadSeen::LOAD_SEEN_NO_LOAD;
+                self.counters.refused = self.counters.refused.wrapping_add(1);
+                self.refused = Some(Absence::Frozen);
+            }
+        }
+        self.inbox = Some(frame);
+    }
+
+    /// A control period by the timer: flight and real time.
+    pub fn tick(&mut self) -> Answer {
+        let frame = self.inbox.take();
+        let period_s = self.period_s();
+        self.navigation.pass(period_s);
+        for (loss, wanted) in self.failsafe.advance(period_s, &self.settings).into_iter().flatten() {
+            self.lose(loss, wanted);
+        }
+        self.control(frame.as_ref())
+    }
+
+    /// A control period by a state frame: lockstep. The same sequence number again gets the same
+    /// answer again.
+    pub fn lockstep(&mut self, frame: &LOAD_STATE_DATA) -> Answer {
+        if let Some(last) = &self.last {
+            let ahead = frame.sequence.wrapping_sub(last.command.sequence);
+            if ahead == 0 {
+                return last.clone();
+            }
+            if ahead != 1 && frame.action == LoadAction::LOAD_ACTION_CONTINUE {
+                return self.out_of_step(frame);
+            }
+        } else if self.is_armed() && frame.action == LoadAction::LOAD_ACTION_CONTINUE {
+            // Armed and never started: after a reset, say, that the sender has not noticed.
+            return self.out_of_step(frame);
+        }
+        let answer = self.control(Some(frame));
+        self.last = Some(answer.clone());
+        answer
+    }
+
+    fn out_of_step(&self, frame: &LOAD_STATE_DATA) -> Answer {
+        self.nothing(Some(frame), self.standing_faults() | LoadFault::LOAD_FAULT_SEQUENCE)
+    }
+
+    /// An answer without a command.
+    fn nothing(&self, frame: Option<&LOAD_STATE_DATA>, faults: LoadFault) -> Answer {
+        let command = LOAD_COMMAND_DATA {
+            time_usec: frame.map_or(0, |frame| frame.time_usec),
+            sequence: frame.map_or(0, |frame| frame.sequence),
+            faults,
+            mode: report::mode(self.mode()),
+            ..LOAD_COMMAND_DATA::DEFAULT
+        };
+        Answer { command, telemetry: None, outputs: [0.0; 4] }
+    }
+
+    /// Faults that stand whatever the state is.
+    fn standing_faults(&self) -> LoadFault {
+        let mut faults = LoadFault::empty();
+        faults.set(LoadFault::LOAD_FAULT_NOT_ARMED, !self.is_armed());
+        faults.set(LoadFault::LOAD_FAULT_OVERRUN, self.overrun);
+        faults.set(LoadFault::LOAD_FAULT_WATCHDOG, self.boot.by_watchdog);
+        faults.set(LoadFault::LOAD_FAULT_INTERNAL_CLOCK, self.boot.internal_clock);
+        faults | self.failsafe.bits()
+    }
+
+    fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
+        let mut faults = self.standing_faults();
+        self.overrun = false;
+        let seen = match frame {
+            Some(frame) if may_start(frame) => Seen::of(frame),
+            Some(_) => Seen::bad(),
+            None => Seen::default(),
+        };
+        // In lockstep the same frames have the same answers, whatever comes between them.
+        let seen = if self.drive() == Drive::Lockstep { seen } else { seen.or(&self.navigation) };
+        let good = seen.good();
+        self.navigates = seen.uav().is_some();
+        let refused = self.refused.take();
+        self.absence = match good {
+            Some(_) => None,
+            None if seen.is_bad => Some(Absence::Bad),
+            None => refused.or(Some(Absence::Missing)),
+        };
+        let period_s = self.period_s();
+        if good.is_some() {
+            let apart_s = if self.since_state_s.is_finite() { self.since_state_s } else { 0.0 };
+            self.apart_s = [self.apart_s[1], apart_s];
+        }
+        self.since_state_s = if good.is_some() { 0.0 } else { self.since_state_s + period_s };
+        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
+        match self.absence {
+            None => self.counters.steps = self.counters.steps.wrapping_add(1),
+            Some(Absence::Bad) => {
+                self.counters.refused = self.counters.refused.wrapping_add(1);
+                faults |= LoadFault::LOAD_FAULT_BAD_STATE;
+            }
+            Some(_) => {
+                self.counters.missed = self.counters.missed.wrapping_add(1);
+                faults |= LoadFault::LOAD_FAULT_NO_STATE;
+            }
+        }
+        faults.set(LoadFault::LOAD_FAULT_STALE_STATE, refused.is_some());
+        if let (Some(frame), Some(state)) = (frame, good) {
+            if frame.action == LoadAction::LOAD_ACTION_START {
+                self.request = Request::Follow;
+            }
+            begin(rig, frame, state, self.request);
+        }
+        let integral = rig.integral();
+        let before = rig.mode();
+        let phase = frame.map_or(0.0, |frame| frame.reference_phase);
+        let mut measured = seen.measured();
+        if before == Mode::Off && good.is_none() {
+            // Whether it stands or flies, the first good state says.
+            measured.uav = None;
+        }
+        let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
+        let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen));
+        let is_in_flight = !matches!(mode, Mode::Off | Mode::Idle | Mode::Fault);
+        if !(is_away && is_in_flight && self.since_state_s <= self.settings.rig().get(parameter!("POL_COAST"))) {
+            self.fault = fault;
+        }
+        let has_fallen_back = is_flying(before) && self.request == Request::Follow && !is_flying(mode);
+        self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
+
+        faults |= fault.map_or(LoadFault::empty(), report::fault);
+        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited);
+        let u_zeta = rig.u_zeta();
+        let zeta = u_zeta.map_or([0.0; 4], |_| rig.zeta().map(report::number));
+        let rotor = rig.duties();
+        let mut answer = self.nothing(frame, faults);
+        answer.command = LOAD_COMMAND_DATA {
+            thrust: command.thrust,
+            torque: command.torque.into(),
+            zeta,
+            u_zeta: u_zeta.unwrap_or(0.0),
+            rotor,
+            ..answer.command
+        };
+        if self.drive() == Drive::Flight {
+            answer.outputs = rotor;
+        }
+        if let (Some(frame), Some(state)) = (frame, good)
+            && (self.is_telemetry_s_turn() || frame.telemetry != 0)
+        {
+            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
+        }
+        let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
+        self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
+        if is_down {
+            self.disarm();
+        }
+        self.end_blindness(mode, period_s);
+        answer
+    }
+
+    /// Stops the rotors where they have turned for too long without a state, or in fault.
+    fn end_blindness(&mut self, mode: Mode, period_s: f32) {
+        let is_blind = mode == Mode::Fault || mode == Mode::Idle && self.absence.is_some();
+        self.blind_s = if is_blind { self.blind_s + period_s } else { 0.0 };
+        if self.blind_s > self.settings.get(Setting::BLIND_TIMEOUT) {
+            self.disarm();
+            self.note(Notice::Blind);
+        }
+    }
+
+    /// Counts a step, and says whether it is one of every `TLM_EVERY`.
+    fn is_telemetry_s_turn(&mut self) -> bool {
+        let every = self.settings.get(Setting::TELEMETRY_EVERY) as u32;
+        let is_turn = every > 0 && self.until_telemetry == 0;
+        self.until_telemetry = if is_turn { every - 1 } else { self.until_telemetry.saturating_sub(1) };
+        is_turn
+    }
+}
+
+/// What a good state does to the controller's memory before the step on it.
+fn begin(rig: &mut Rig<f32>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
+    let is_off = rig.mode() == Mode::Off;
+    let hover = Command::of_thrust(rig.vehicle().hover_thrust());
+    let applied = if is_off { hover } else { rig.output().command };
+    // A good state and finite numbers are not refused; if they were, the law would be as it was.
+    let begun = match frame.action {
+        LoadAction::LOAD_ACTION_START => rig.start(state, frame.zeta),
+        LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
+        LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
+        LoadAction::LOAD_ACTION_CONTINUE | LoadAction::LOAD_ACTION_STAND => Ok(()),
+    };
+    debug_assert!(begun.is_ok(), "{begun:?}");
+}
+
+/// Whether the frame has a finite ζ, if it is one to start with.
+fn may_start(frame: &LOAD_STATE_DATA) -> bool {
+    frame.action != LoadAction::LOAD_ACTION_START || frame.zeta.iter().all(|z| z.is_finite())
+}
+
+/// Whether the law flies.
+fn is_flying(mode: Mode) -> bool {
+    matches!(mode, Mode::Join | Mode::Follow)
+}
