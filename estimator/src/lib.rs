@@ -20,6 +20,8 @@ mod lever;
 mod motion;
 mod navigation;
 mod payload;
+#[cfg(test)]
+mod random;
 
 pub use drag::Drag;
 pub use model::{Matrix3, OutOfRange, Real, State, Vector3};

@@ -5,20 +5,7 @@ use super::predict::{Covariance, Spread};
 use super::strapdown::{ERRORS, Strapdown, index};
 use super::*;
 use crate::covariance::at;
-
-/// Uniform in ±1, by the multiplier of Knuth's MMIX.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self, most: f64) -> Vector3<f64> {
-        Vector3::new(self.next(), self.next(), self.next()) * most
-    }
-}
+use crate::random::Random;
 
 fn draw(random: &mut Random) -> Strapdown<f64> {
     let unit = |v: Vector3<f64>| v / v.dot(&v).sqrt();

@@ -1,6 +1,6 @@
 //! Panels of a figure: a view in space, a plan, and curves over time.
 
-use plotters::coord::Shift;
+use plotters::coord::{CoordTranslate, Shift};
 use plotters::prelude::*;
 use std::ops::Range;
 
@@ -138,14 +138,8 @@ pub fn space(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track])
     chart.draw_series(names.map(|(name, place)| Text::new(name, place, (FONT, 13 * FINE).into_font())))?;
     chart.draw_series(LineSeries::new(curve.iter().map(at), GREY.stroke_width(FINE)))?;
     for track in tracks {
-        let colour = track.colour;
-        chart
-            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2 * FINE)))?
-            .label(&track.label)
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
-            });
-        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, colour.filled())))?;
+        line(&mut chart, track.points.iter().map(at), &track.label, track.colour)?;
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, track.colour.filled())))?;
     }
     chart
         .configure_series_labels()
@@ -205,23 +199,10 @@ fn projection(area: &Area<'_>, title: &str, curve: &[[f64; 3]], tracks: &[Track]
     let at = |p: &[f64; 3]| (p[right], sense * p[up]);
     chart.draw_series(DashedLineSeries::new(curve.iter().map(at), 6 * FINE, 4 * FINE, GREY.stroke_width(FINE)))?;
     for track in tracks {
-        let colour = track.colour;
-        chart
-            .draw_series(LineSeries::new(track.points.iter().map(at), colour.stroke_width(2 * FINE)))?
-            .label(&track.label)
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
-            });
-        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, colour.filled())))?;
+        line(&mut chart, track.points.iter().map(at), &track.label, track.colour)?;
+        chart.draw_series(track.points.first().map(|p| Circle::new(at(p), 4 * FINE, track.colour.filled())))?;
     }
-    Ok(chart
-        .configure_series_labels()
-        .margin(5 * FINE)
-        .legend_area_size(30 * FINE)
-        .position(SeriesLabelPosition::MiddleMiddle)
-        .label_font((FONT, 13 * FINE))
-        .background_style(WHITE.mix(0.8))
-        .draw()?)
+    legend(&mut chart, SeriesLabelPosition::MiddleMiddle)
 }
 
 /// Curves over time on a linear scale.
@@ -243,31 +224,11 @@ pub fn time(area: &Area<'_>, quantity: &str, curves: &[Curve], marks_s: &[f64]) 
         .label_style((FONT, 13 * FINE))
         .axis_desc_style((FONT, 14 * FINE))
         .draw()?;
-    for &mark in marks_s {
-        chart.draw_series(DashedLineSeries::new(
-            [(mark, y.start), (mark, y.end)],
-            3 * FINE,
-            4 * FINE,
-            GREY.stroke_width(FINE),
-        ))?;
-    }
+    mark(&mut chart, &y, marks_s)?;
     for curve in curves {
-        let colour = curve.colour;
-        chart
-            .draw_series(LineSeries::new(curve.points.iter().copied(), colour.stroke_width(2 * FINE)))?
-            .label(&curve.label)
-            .legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
-            });
+        line(&mut chart, curve.points.iter().copied(), &curve.label, curve.colour)?;
     }
-    Ok(chart
-        .configure_series_labels()
-        .margin(5 * FINE)
-        .legend_area_size(30 * FINE)
-        .position(SeriesLabelPosition::UpperRight)
-        .label_font((FONT, 13 * FINE))
-        .background_style(WHITE.mix(0.8))
-        .draw()?)
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
 /// Positive curves over time on a logarithmic scale that begins at `floor`.
@@ -287,29 +248,52 @@ pub fn time_log(area: &Area<'_>, quantity: &str, floor: f64, curves: &[Curve], m
         .label_style((FONT, 13 * FINE))
         .axis_desc_style((FONT, 14 * FINE))
         .draw()?;
-    for &mark in marks_s {
-        chart.draw_series(DashedLineSeries::new(
-            [(mark, floor), (mark, top)],
-            3 * FINE,
-            4 * FINE,
-            GREY.stroke_width(FINE),
-        ))?;
-    }
+    mark(&mut chart, &(floor..top), marks_s)?;
     for curve in curves {
-        let colour = curve.colour;
         let points = curve.points.iter().map(|&(t, value)| (t, value.max(floor)));
-        let drawn = chart.draw_series(LineSeries::new(points, colour.stroke_width(2 * FINE)))?;
-        if !curve.label.is_empty() {
-            drawn.label(&curve.label).legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + 18 * FINE as i32, y)], colour.stroke_width(2 * FINE))
-            });
-        }
+        line(&mut chart, points, &curve.label, curve.colour)?;
     }
+    legend(&mut chart, SeriesLabelPosition::UpperRight)
+}
+
+/// A line through `points` that the legend names, if it has a `label`.
+fn line<P: Clone + 'static, C: CoordTranslate<From = P>>(
+    chart: &mut ChartContext<'_, SVGBackend<'_>, C>,
+    points: impl IntoIterator<Item = P>,
+    label: &str,
+    colour: RGBColor,
+) -> Drawn {
+    let style = colour.stroke_width(2 * FINE);
+    let drawn = chart.draw_series(LineSeries::new(points, style))?;
+    if !label.is_empty() {
+        drawn.label(label).legend(move |(x, y)| PathElement::new([(x, y), (x + 18 * FINE as i32, y)], style));
+    }
+    Ok(())
+}
+
+/// A dashed line across the range `y` at each of `marks_s`.
+fn mark<X: Ranged<ValueType = f64>, Y: Ranged<ValueType = f64>>(
+    chart: &mut ChartContext<'_, SVGBackend<'_>, Cartesian2d<X, Y>>,
+    y: &Range<f64>,
+    marks_s: &[f64],
+) -> Drawn {
+    for &t in marks_s {
+        let ends = [(t, y.start), (t, y.end)];
+        chart.draw_series(DashedLineSeries::new(ends, 3 * FINE, 4 * FINE, GREY.stroke_width(FINE)))?;
+    }
+    Ok(())
+}
+
+/// The names of the lines.
+fn legend<'a, X: Ranged<ValueType = f64>, Y: Ranged<ValueType = f64>>(
+    chart: &mut ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
+    position: SeriesLabelPosition,
+) -> Drawn {
     Ok(chart
         .configure_series_labels()
         .margin(5 * FINE)
         .legend_area_size(30 * FINE)
-        .position(SeriesLabelPosition::UpperRight)
+        .position(position)
         .label_font((FONT, 13 * FINE))
         .background_style(WHITE.mix(0.8))
         .draw()?)
