@@ -211,15 +211,15 @@ pub unsafe extern "C" fn slung_step_measured(
         let frames = frames(number)?;
         // SAFETY: the caller's promise.
         let (uav, force) = unsafe { (optional(reported)?, optional(specific_force_body_m_s2)?) };
-        fly(instance, state.as_ref(), frames, uav, force);
+        let body_rate = fly(instance, state.as_ref(), frames, uav, force);
         // SAFETY: the caller's promise.
-        unsafe { answer(&instance.rig, state.as_ref(), output)? };
+        unsafe { answer(&instance.rig, body_rate, output)? };
         known
     };
     code(step())
 }
 
-/// The step itself. Out of line, and the answer too: neither's stack lies under the other's.
+/// The step itself, and the body rate that it was made on. Out of line, and the answer too: neither's stack lies under the other's.
 #[inline(never)]
 fn fly(
     instance: &mut Instance,
@@ -227,10 +227,12 @@ fn fly(
     frames: Frames,
     reported: Option<&SlungUav>,
     force: Option<&[f32; 3]>,
-) {
+) -> Option<Vector3<f32>> {
     let uav = reported.map(|reported| uav(frames, reported));
     let specific_force = force.map(|force| frames.body(&Vector3::from(*force)));
-    instance.rig.step(Measured { state, uav: uav.as_ref(), specific_force }, instance.request, 0.0);
+    let measured = Measured { state, uav: uav.as_ref(), specific_force };
+    instance.rig.step(measured, instance.request, 0.0);
+    measured.body_rate()
 }
 
 /// Writes the last step's answer.
@@ -238,10 +240,10 @@ fn fly(
 /// # Safety
 /// As [`write_sized`].
 #[inline(never)]
-unsafe fn answer(rig: &Controller, state: Option<&State<f32>>, target: *mut SlungOutput) -> Result<(), Status> {
+unsafe fn answer(rig: &Controller, body_rate: Option<Vector3<f32>>, target: *mut SlungOutput) -> Result<(), Status> {
     let output = rig.output();
     let Command { thrust, torque } = output.command;
-    let setpoint = rig.rate_setpoint(state);
+    let setpoint = rig.rate_setpoint(body_rate);
     let [thrust_normalized, roll, pitch, yaw] = rig.actuators().shares(&output.command);
     let told = SlungOutput {
         struct_size: SlungOutput::SIZE,

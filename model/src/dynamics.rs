@@ -88,9 +88,7 @@ impl<'a, T: Real> Model<'a, T> {
     /// ω̇ under `torque` and τ_d (N·m), and its change with a newton metre more about each axis.
     #[inline]
     pub fn body(&self, torque: &Vector3<T>, disturbing: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
-        let (vehicle, omega) = (self.vehicle, &self.state.body_rate);
-        let sum = vehicle.inertia().component_mul(omega).cross(omega) + disturbing + torque;
-        (sum.component_mul(vehicle.inverse_inertia()), *vehicle.inverse_inertia())
+        (turning(self.vehicle, &self.state.body_rate, torque, disturbing), *self.vehicle.inverse_inertia())
     }
 
     /// All of them under `command` and `disturbance`, whose δ is orthogonal to the rod.
@@ -101,6 +99,18 @@ impl<'a, T: Real> Model<'a, T> {
             body: self.body(&command.torque, &disturbance.torque).0,
         }
     }
+}
+
+/// ω̇ (2.7) of a body that turns at `body_rate` (rad/s, body axes) under `torque` and τ_d, N·m.
+#[inline]
+pub fn turning<T: Real>(
+    vehicle: &Vehicle<T>,
+    body_rate: &Vector3<T>,
+    torque: &Vector3<T>,
+    disturbing: &Vector3<T>,
+) -> Vector3<T> {
+    let sum = vehicle.inertia().component_mul(body_rate).cross(body_rate) + disturbing + torque;
+    sum.component_mul(vehicle.inverse_inertia())
 }
 
 /// A position and its rate `dt` later at constant `acceleration`.

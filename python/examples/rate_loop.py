@@ -2,19 +2,14 @@
 
     python rate_loop.py
 
-The autopilot here is the simplest there is: about each axis it turns an error of body rate into the torque that would remove it with
-the loop's time constant, 1,000 times a second. The law is told that time constant (`INN_T_1` to `INN_T_3`) and the latency; the
-motors' lag is the loop's own to make good.
+The autopilot is the scenario's: about each axis it turns an error of body rate into the torque that would remove it with the loop's
+time constant, 1,000 times a second. The law is told that time constant (`INN_T_1` to `INN_T_3`) and the latency; the motors' lag is the
+loop's own to make good.
 """
-
-from collections import deque
-
-import numpy as np
 
 import slung
 
-RATE_HZ, SETPOINT_PERIOD, LATENCY, MOTORS, LOOP = 1000.0, 0.01, 0.02, 0.03, 0.03
-INERTIA = np.array([0.03, 0.03, 0.05])
+RATE_HZ, LATENCY, MOTORS, LOOP = 100.0, 0.02, 0.03, 0.03
 HOVER = 3.0 * 9.81
 
 CIRCLE = slung.Path(kind="circle", radius=5.0, p3=-10.0, speed=1.0)
@@ -32,27 +27,20 @@ def fly(path, duration_s, judged_from_s):
     scenario = slung.Scenario(
         path=path,
         controller={"rate_hz": RATE_HZ},
-        actuators={"lag_s": MOTORS},
+        actuators={"latency_s": LATENCY, "lag_s": MOTORS, "rate_loop": {"rate_hz": 1000.0, "time_constant_s": [LOOP] * 3}},
         initial={"position": [6.0, 0.0, -10.0]},
     )
     parameters = slung.Parameters(
-        CTL_PERIOD=SETPOINT_PERIOD, CTL_LATENCY=LATENCY, INN_T_1=LOOP, INN_T_2=LOOP, INN_T_3=LOOP
+        CTL_PERIOD=1.0 / RATE_HZ, CTL_LATENCY=LATENCY, INN_T_1=LOOP, INN_T_2=LOOP, INN_T_3=LOOP
     )
     world, rig = slung.World(scenario), slung.Rig(parameters, path)
     rig.take_over(world.state, HOVER)
-    late = deque([(HOVER, np.zeros(3))] * round(LATENCY / SETPOINT_PERIOD))
     worst = 0.0
     for step in range(round(duration_s * RATE_HZ)):
-        state = world.state
-        if step % round(SETPOINT_PERIOD * RATE_HZ) == 0:
-            output = rig.step(state, "follow")
-            late.append((output.thrust, output.body_rate_setpoint))
-            thrust, wanted = late.popleft()
-        rate = state.body_rate
-        torque = INERTIA * (wanted - rate) / LOOP + np.cross(rate, INERTIA * rate)
-        world.advance(thrust, torque)
+        output = rig.step(world.state, "follow")
+        world.advance_at_rates(output.thrust, output.body_rate_setpoint)
         if step >= judged_from_s * RATE_HZ:
-            worst = max(worst, path.distance(state.position))
+            worst = max(worst, path.distance(world.state.position))
     assert output.mode == "follow", output
     return worst
 

@@ -378,6 +378,8 @@ class World:
         """At the scenario's start, `thrust` (N; hover's if left out) having acted for long."""
     def advance(self, thrust: float, torque: ArrayLike = ..., periods: int = 1) -> None:
         """Passes control periods under a thrust (N) and torque (N m, body axes)."""
+    def advance_at_rates(self, thrust: float, body_rate: ArrayLike, periods: int = 1) -> None:
+        """The same through the scenario's `actuators.rate_loop`: a thrust (N) and body rate (rad/s, body axes)."""
     @property
     def time_s(self) -> float: ...
     @property

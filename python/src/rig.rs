@@ -114,7 +114,7 @@ impl Rig {
             let specific_force = specific_force.map(|force| Vector3::from(force.map(controller::Real::lit)));
             let measured = Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force };
             let output = *rig.step(measured, request, controller::Real::lit(phase));
-            let RateSetpoint { angular_acceleration, body_rate } = rig.rate_setpoint(state.as_ref());
+            let RateSetpoint { angular_acceleration, body_rate } = rig.rate_setpoint(measured.body_rate());
             Output {
                 setpoint: RateSetpoint {
                     angular_acceleration: angular_acceleration.map(controller::Real::to_f64),

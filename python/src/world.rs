@@ -1,8 +1,9 @@
 //! The simulator's world, stepped from Python.
 
 use controller::{Command, Vector3};
-use hil_sim::world::{Bodies, InstrumentModel, Seed};
+use hil_sim::world::{Bodies, InstrumentModel, Order, Seed};
 use numpy::PyArray1;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -17,6 +18,7 @@ use crate::state::{State, Uav};
 pub struct World {
     world: hil_sim::world::World,
     instruments: InstrumentModel,
+    has_rate_loop: bool,
 }
 
 #[pymethods]
@@ -30,7 +32,8 @@ impl World {
         let hover = scenario.vehicle.total_mass() * scenario.vehicle.gravity;
         let command = Command { thrust: thrust.unwrap_or(hover), torque: Vector3::zeros() };
         let instruments = InstrumentModel::new(&scenario.sensors, 1.0 / scenario.controller.rate_hz, seed);
-        Self { world: scenario.begin(&start, command, seed), instruments }
+        let has_rate_loop = scenario.actuators.rate_loop.is_some();
+        Self { world: scenario.begin(&start, command, seed), instruments, has_rate_loop }
     }
 
     #[pyo3(signature = (thrust, torque = [0.0; 3], periods = 1))]
@@ -39,6 +42,18 @@ impl World {
         torque.iter().try_for_each(|&torque| within("torque", torque, [-1e6, 1e6]))?;
         let command = Command { thrust, torque: torque.into() };
         py.detach(|| (0..periods).for_each(|_| self.world.advance(&command)));
+        Ok(())
+    }
+
+    #[pyo3(signature = (thrust, body_rate, periods = 1))]
+    fn advance_at_rates(&mut self, py: Python<'_>, thrust: f64, body_rate: [f64; 3], periods: u32) -> PyResult<()> {
+        if !self.has_rate_loop {
+            return Err(PyValueError::new_err("the scenario has no actuators.rate_loop to take body rates"));
+        }
+        within("thrust", thrust, [-1e6, 1e6])?;
+        body_rate.iter().try_for_each(|&rate| within("body_rate", rate, [-1e4, 1e4]))?;
+        let order = Order::Rates { thrust, body_rate: body_rate.into() };
+        py.detach(|| (0..periods).for_each(|_| self.world.obey(order)));
         Ok(())
     }
 

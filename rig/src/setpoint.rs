@@ -15,7 +15,7 @@
 //! Each axis has its own time constant: yaw, by the rotors' drag, is mostly many times slower than
 //! roll and pitch.
 
-use controller::{Real, State, Vector3, dynamics::Model};
+use controller::{Real, Vector3, dynamics::turning};
 
 use crate::entry::Entry;
 use crate::parameters::Parameters;
@@ -46,18 +46,19 @@ pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> 
 }
 
 impl<T: Real, P: controller::Path<T>> Rig<T, P> {
-    /// The last step's command as an inner rate loop's setpoint, at the `state` it was made on.
-    /// Without a state that can be trusted it is to stop turning.
+    /// The last step's command as an inner rate loop's setpoint, at the
+    /// [body rate](controller::Measured::body_rate) it was made on, rad/s. Where none is known it is
+    /// to stop turning.
     #[must_use]
-    pub fn rate_setpoint(&self, state: Option<&State<T>>) -> RateSetpoint<T> {
-        let Some(state) = state.filter(|state| state.check().is_ok()) else {
+    pub fn rate_setpoint(&self, body_rate: Option<Vector3<T>>) -> RateSetpoint<T> {
+        let Some(body_rate) = body_rate else {
             return RateSetpoint { angular_acceleration: Vector3::zeros(), body_rate: Vector3::zeros() };
         };
-        let command = &self.output().command;
-        let acceleration = Model::at(self.vehicle(), state).acceleration(command, &self.disturbance()).body;
+        let (torque, disturbing) = (&self.output().command.torque, &self.disturbance().torque);
+        let acceleration = turning(self.vehicle(), &body_rate, torque, disturbing);
         RateSetpoint {
             angular_acceleration: acceleration,
-            body_rate: state.body_rate + acceleration.component_mul(self.time_constants()),
+            body_rate: body_rate + acceleration.component_mul(self.time_constants()),
         }
     }
 }

@@ -113,6 +113,7 @@ pub fn fly_here() -> Flown {
         let output = rig.step(Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force }, request, 0.0);
         Decision {
             command: output.command.cast(),
+            body_rate: None,
             zeta: [0.0; 4],
             mode: output.mode,
             fault: output.fault,

@@ -164,6 +164,15 @@ pub struct Measured<'a, T> {
     pub specific_force: Option<Vector3<T>>,
 }
 
+impl<T: Real> Measured<'_, T> {
+    /// ω in body axes, rad/s, of the state, or else of the UAV; none where neither is to be trusted.
+    #[must_use]
+    pub fn body_rate(&self) -> Option<Vector3<T>> {
+        let state = self.state.filter(|state| state.check().is_ok()).map(|state| state.body_rate);
+        state.or_else(|| self.uav.filter(|uav| uav.check().is_ok()).map(|uav| uav.body_rate))
+    }
+}
+
 impl<'a, T> From<Option<&'a State<T>>> for Measured<'a, T> {
     /// The state, where there is one, and nothing else.
     fn from(state: Option<&'a State<T>>) -> Self {

@@ -232,6 +232,13 @@ pub const SECTIONS: &[Section] = &[
             ),
             key("latency_s", "s", Number(0.0, 0.5), "0.0", "Latency that the law knows of."),
             key("rotor_lag_s", "s", Number(0.0, 0.5), "0.0", "Rotor lag that the law knows of."),
+            key(
+                "rate_loop_s",
+                "s",
+                Other("3 numbers, each 0 to 5"),
+                "(those of `actuators.rate_loop`)",
+                "Time constants of the vehicle's rate loop, as the law knows them.",
+            ),
             key("observer", "", Other("table"), "(off)", "Disturbance observers."),
             key("limits", "", Other("table"), "(none)", "On what the law commands."),
             key(
@@ -872,12 +879,28 @@ pub const SECTIONS: &[Section] = &[
             key("max_torque", "N m", Each(3, 0.0, 1e5), "(none)", "Largest torque about each body axis."),
             key("rotors", "", Other("table"), "(ideal)", "Four rotors, each with its limits."),
             key(
+                "rate_loop",
+                "",
+                Other("table"),
+                "(none)",
+                "The autopilot's own rate loop, to which the law gives thrust and body rates in place of torques.",
+            ),
+            key(
                 "sag",
                 "",
                 Other("{ max_thrust, during = { at_s, for_s } }"),
                 "(none)",
                 "A time with less thrust to be had (N, s): a sagging battery.",
             ),
+        ],
+    },
+    Section {
+        table: "actuators.rate_loop",
+        about: "A loop of body rates between law and rotors, of first order about each axis. Rotor lag below it is its own to make good.",
+        least: "[actuators.rate_loop]\n",
+        keys: &[
+            key("rate_hz", "Hz", Number(50.0, 1e4), "1000.0", "How often it runs."),
+            key("time_constant_s", "s", Each(3, 0.005, 5.0), "[0.03, 0.03, 0.03]", "T_i about the body axes."),
         ],
     },
     Section {

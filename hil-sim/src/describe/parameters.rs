@@ -40,6 +40,9 @@ pub fn without_path(spec: &ControllerSpec) -> Result<Parameters<f64>, Unsupporte
     one(all, parameter!("VEH_G"), gravity)?;
     let Sampling { period, latency, rotor_lag, look_ahead } = spec.sampling();
     run_of(all, run!("CTL_PERIOD" to "CTL_AHEAD"), [period, latency, rotor_lag, f64::from(u8::from(look_ahead))])?;
+    if let Some(times) = spec.rate_loop_s {
+        run_of(all, run!("INN_T_1" to "INN_T_3"), times)?;
+    }
     let ObserverParams { payload_bandwidth, along_bandwidth, cable_stiffness, .. } = spec.observer;
     run_of(all, run!("OBS_W_LOAD" to "OBS_EA"), [payload_bandwidth, along_bandwidth, cable_stiffness])?;
     let ObserverParams { rod_bandwidth, torque_bandwidth, .. } = spec.observer;

@@ -229,7 +229,7 @@ pub fn fly(
             break;
         }
         applied = decision.command;
-        world.advance(&applied);
+        world.obey(decision.order());
         step += 1;
         // Each component: a sum could overflow.
         let Command { thrust, torque } = &decision.command;

@@ -1,14 +1,14 @@
 //! The controller as it flies everywhere, behind the face of whatever answers readings, in either
 //! scalar, with its numbers as f64 for recording.
 
-use controller::{Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav};
+use controller::{Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3};
 use rig::{Parameters, Rig};
 
 use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
 use crate::describe::parameters::without_path;
 use crate::describe::scenario::{ControllerSpec, Law};
-use crate::world::Reading;
+use crate::world::{Order, Reading};
 
 /// Whatever answers readings with commands: a controller in this program, or a target at the other
 /// end of a link.
@@ -34,6 +34,8 @@ pub struct Pilot<T: Real> {
     reference: Option<ReferenceSpec>,
     /// A law alone does not join its path, it flies.
     joins: bool,
+    /// It is above a rate loop.
+    gives_rates: bool,
 }
 
 /// One answer of a pilot.
@@ -41,6 +43,8 @@ pub struct Pilot<T: Real> {
 pub struct Decision {
     /// Thrust and torque for the coming hold.
     pub command: Command<f64>,
+    /// The same for the rate loop that the law is above, in body axes, rad/s; none: there is none.
+    pub body_rate: Option<Vector3<f64>>,
     /// ζ at the sample, m/s²⁺ᵏ.
     pub zeta: [f64; 4],
     /// What the vehicle is doing.
@@ -82,6 +86,15 @@ pub struct Observed {
     pub payload_mass: f64,
 }
 
+impl Decision {
+    /// What the vehicle is told.
+    #[must_use]
+    pub fn order(&self) -> Order {
+        let Command { thrust, .. } = self.command;
+        self.body_rate.map_or(Order::Wrench(self.command), |body_rate| Order::Rates { thrust, body_rate })
+    }
+}
+
 impl<T: Real> Pilot<T> {
     /// The controller that `spec` describes, rotors off.
     ///
@@ -109,7 +122,7 @@ impl<T: Real> Pilot<T> {
             Law::Follow { .. } => None,
             Law::Track { reference, .. } => Some(reference),
         };
-        Ok(Self { rig: Box::new(rig), reference, joins: spec.supervised })
+        Ok(Self { rig: Box::new(rig), reference, joins: spec.supervised, gives_rates: spec.rate_loop_s.is_some() })
     }
 
     /// The command for the hold that begins at `t_s`, from what is read then.
@@ -121,6 +134,7 @@ impl<T: Real> Pilot<T> {
         let all = Measured { state: Some(&state), uav: uav.as_ref(), specific_force };
         let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
+        let body_rate = measured.body_rate();
         let (zeta, integral) = (*self.rig.zeta(), self.rig.integral());
         let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);
         let telemetry = self.rig.numbers().map(|numbers| {
@@ -141,6 +155,7 @@ impl<T: Real> Pilot<T> {
         });
         Decision {
             command: command.cast(),
+            body_rate: self.gives_rates.then(|| self.rig.rate_setpoint(body_rate).body_rate.map(T::cast)),
             zeta: zeta.map(T::cast),
             mode,
             fault,

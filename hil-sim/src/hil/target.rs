@@ -135,7 +135,10 @@ impl Target {
     /// # Errors
     /// The scenario can't be flown there, or the target or the line fails.
     pub fn prepare(&mut self, scenario: &Scenario) -> Result<(), HilError> {
-        let ControllerSpec { law, rate_hz, .. } = &scenario.controller;
+        let ControllerSpec { law, rate_hz, rate_loop_s, .. } = &scenario.controller;
+        if rate_loop_s.is_some() {
+            return Err(HilError::Unsupported("actuators.rate_loop: the target commands rotors".into()));
+        }
         self.line.statistics = Statistics::default();
         self.period = Duration::from_secs_f64(1.0 / rate_hz);
         self.reference_rate = match law {
@@ -410,6 +413,7 @@ impl Target {
         });
         Ok(Decision {
             command: Command { thrust: command.thrust.into(), torque: Vector3::from(command.torque).map(f64::from) },
+            body_rate: None,
             zeta,
             mode: mode(command.mode),
             fault: None,
@@ -423,6 +427,7 @@ impl Target {
 fn down() -> Decision {
     Decision {
         command: Command::zero(),
+        body_rate: None,
         zeta: [0.0; 4],
         mode: Mode::Off,
         fault: None,

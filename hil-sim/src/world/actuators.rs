@@ -4,13 +4,16 @@
 //! A command acts `latency_s` after it is given, any fraction of a control period included, and
 //! then through the rotors' first-order lag, u̇ = (u_commanded − u)/τ, solved exactly. Saturation
 //! stands before the lag (rotors cannot be told more), the scale after it (air density, battery,
-//! worn propellers): thrust = s · u.
+//! worn propellers): thrust = s · u. With a [rate loop](RateLoop) what is given is thrust and body
+//! rate, and the torque is the loop's.
 
 use controller::{Command, Vector3};
 use serde::Deserialize;
 use std::collections::VecDeque;
 
+use super::body::Body;
 use super::check;
+use super::rate_loop::RateLoop;
 use super::rotors::Rotors;
 use super::sensors::Window;
 use crate::describe::input::{Invalid, join, within};
@@ -31,6 +34,8 @@ pub struct Actuators {
     pub max_torque: Option<[f64; 3]>,
     /// The rotors, each with its limits; ideal ones if left out.
     pub rotors: Option<Rotors>,
+    /// The autopilot's own rate loop, which the law then gives its setpoints; none if left out.
+    pub rate_loop: Option<RateLoop>,
     /// A time in which there is less thrust to be had: a sagging battery. The law is not told.
     pub sag: Option<Sag>,
 }
@@ -55,6 +60,7 @@ impl Default for Actuators {
             thrust_range: None,
             max_torque: None,
             rotors: None,
+            rate_loop: None,
             sag: None,
         }
     }
@@ -83,6 +89,7 @@ impl Actuators {
             check(&at, "max_thrust", sag.max_thrust, 0.0, 1e5)?;
             sag.during.check(&join(&at, "during"))?;
         }
+        self.rate_loop.map_or(Ok(()), |rate_loop| rate_loop.check(&join(at, "rate_loop")))?;
         self.rotors.map_or(Ok(()), |rotors| rotors.check(&join(at, "rotors")))
     }
 
@@ -108,12 +115,30 @@ impl Actuators {
     }
 }
 
-/// Commands under way, and the rotors.
+/// What the vehicle is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Order {
+    /// Its rotors.
+    Wrench(Command<f64>),
+    /// Its rate loop.
+    Rates {
+        /// N.
+        thrust: f64,
+        /// In body axes, rad/s.
+        body_rate: Vector3<f64>,
+    },
+}
+
+/// Orders under way, the rate loop, and the rotors.
 #[derive(Clone, Debug)]
 pub struct ActuatorModel {
     actuators: Actuators,
     /// What is yet to come, with the time at which it acts, s.
-    line: VecDeque<(f64, Command<f64>)>,
+    line: VecDeque<(f64, Order)>,
+    /// What acts now.
+    order: Order,
+    /// When the rate loop runs next, s.
+    loop_at_s: f64,
     /// What the rotors are told now, and what they give.
     target: Command<f64>,
     given: Command<f64>,
@@ -128,26 +153,42 @@ impl ActuatorModel {
     #[must_use]
     pub fn new(actuators: Actuators, command: Command<f64>) -> Self {
         let target = actuators.saturate(0.0, &command);
-        Self { actuators, line: VecDeque::new(), target, given: target }
+        let order = match actuators.rate_loop {
+            Some(_) => Order::Rates { thrust: command.thrust, body_rate: Vector3::zeros() },
+            None => Order::Wrench(command),
+        };
+        Self { actuators, line: VecDeque::new(), order, loop_at_s: 0.0, target, given: target }
     }
 
-    /// Takes a command at `t_s`.
-    pub fn push(&mut self, t_s: f64, command: &Command<f64>) {
-        let acts_s = t_s + self.actuators.latency_s;
-        self.line.push_back((acts_s, self.actuators.saturate(acts_s, command)));
+    /// Takes an order at `t_s`.
+    pub fn push(&mut self, t_s: f64, order: Order) {
+        self.line.push_back((t_s + self.actuators.latency_s, order));
     }
 
-    /// From `t_s` to when the rotors are next told otherwise, or to `end_s`: the length of that
-    /// piece.
-    pub fn piece(&mut self, t_s: f64, end_s: f64) -> f64 {
-        while let Some((at_s, command)) = self.line.front() {
-            if *at_s > t_s + INSTANT {
-                return if *at_s < end_s - INSTANT { at_s - t_s } else { end_s - t_s };
+    /// From `t_s`, when the vehicle moves as `body`, to when the rotors are next told otherwise, or
+    /// to `end_s`: the length of that piece.
+    pub fn piece(&mut self, t_s: f64, end_s: f64, body: &Body) -> f64 {
+        let mut next_s = end_s;
+        while let Some(&(at_s, order)) = self.line.front() {
+            if at_s > t_s + INSTANT {
+                next_s = at_s;
+                break;
             }
-            self.target = *command;
+            self.order = order;
+            if let Order::Wrench(command) = order {
+                self.target = self.actuators.saturate(at_s, &command);
+            }
             self.line.pop_front();
         }
-        end_s - t_s
+        if let (Some(rate_loop), Order::Rates { thrust, body_rate }) = (self.actuators.rate_loop, self.order) {
+            if self.loop_at_s <= t_s + INSTANT {
+                let torque = rate_loop.torque(&body.vehicle().inertia, &body.bodies().body_rate, &body_rate);
+                self.target = self.actuators.saturate(t_s, &Command { thrust, torque });
+                self.loop_at_s = t_s + 1.0 / rate_loop.rate_hz;
+            }
+            next_s = next_s.min(self.loop_at_s);
+        }
+        if next_s < end_s - INSTANT { next_s - t_s } else { end_s - t_s }
     }
 
     /// What acts on the vehicle `dt` s after the piece's start at `t_s`.
@@ -190,6 +231,12 @@ impl ActuatorModel {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use controller::State;
+    use witness::plant::VehicleParameters;
+
+    fn hovering() -> Body {
+        Body::new(VehicleParameters::default(), None, None, &State::at_rest(Vector3::zeros()))
+    }
 
     fn thrust(thrust: f64) -> Command<f64> {
         Command { thrust, torque: Vector3::zeros() }
@@ -199,12 +246,13 @@ mod tests {
     fn a_command_acts_after_the_latency_and_approaches_with_the_lag() {
         let actuators = Actuators { lag_s: 0.05, latency_s: 0.005, thrust_scale: 0.5, ..Actuators::default() };
         let mut model = ActuatorModel::new(actuators, thrust(10.0));
-        model.push(0.0, &thrust(20.0));
+        model.push(0.0, Order::Wrench(thrust(20.0)));
+        let body = hovering();
         // Two periods of 2 ms before it acts, then in the midst of the third.
         for (start, pieces) in [(0.0, &[0.002][..]), (0.002, &[0.002]), (0.004, &[0.001, 0.001])] {
             let mut t = start;
             for wanted in pieces {
-                let piece = model.piece(t, start + 0.002);
+                let piece = model.piece(t, start + 0.002, &body);
                 assert!((piece - wanted).abs() < 1e-12, "{piece} {wanted}");
                 model.pass(piece);
                 t += piece;
@@ -220,8 +268,8 @@ mod tests {
         let sag = Some(Sag { max_thrust: 20.0, during: Window { at_s: 1.0, for_s: 2.0 } });
         let mut model = ActuatorModel::new(Actuators { sag, ..Actuators::default() }, thrust(30.0));
         for (t_s, wanted) in [(0.9, 30.0), (1.0, 20.0), (2.9, 20.0), (3.0, 30.0)] {
-            model.push(t_s, &thrust(30.0));
-            model.piece(t_s, t_s + 0.002);
+            model.push(t_s, Order::Wrench(thrust(30.0)));
+            model.piece(t_s, t_s + 0.002, &hovering());
             assert_eq!(model.at(t_s, 0.0).thrust, wanted, "{t_s}");
         }
     }
@@ -231,8 +279,26 @@ mod tests {
         let actuators =
             Actuators { thrust_range: Some([3.0, 60.0]), max_torque: Some([1.0, 2.0, 3.0]), ..Actuators::default() };
         let mut model = ActuatorModel::new(actuators, thrust(30.0));
-        model.push(0.0, &Command { thrust: 100.0, torque: Vector3::new(-5.0, 5.0, 0.5) });
-        model.piece(0.0, 0.002);
+        model.push(0.0, Order::Wrench(Command { thrust: 100.0, torque: Vector3::new(-5.0, 5.0, 0.5) }));
+        model.piece(0.0, 0.002, &hovering());
         assert_eq!(model.at(0.0, 0.0), Command { thrust: 60.0, torque: Vector3::new(-1.0, 2.0, 0.5) });
+    }
+
+    #[test]
+    fn a_rate_loop_runs_by_its_own_clock() {
+        let rate_loop = Some(RateLoop { rate_hz: 500.0, time_constant_s: [0.03, 0.03, 0.1] });
+        let mut model = ActuatorModel::new(Actuators { rate_loop, ..Actuators::default() }, thrust(30.0));
+        let body_rate = Vector3::new(0.3, 0.0, -0.5);
+        model.push(0.0, Order::Rates { thrust: 31.0, body_rate });
+        let (mut t_s, body) = (0.0, hovering());
+        for _ in 0..5 {
+            let piece = model.piece(t_s, 0.01, &body);
+            assert!((piece - 0.002).abs() < 1e-12, "{piece}");
+            t_s += piece;
+        }
+        let [j1, _, j3] = body.vehicle().inertia;
+        let Command { thrust, torque } = model.at(0.0, 0.0);
+        assert_eq!(thrust, 31.0);
+        assert!((torque - Vector3::new(j1 * 0.3 / 0.03, 0.0, -j3 * 0.5 / 0.1)).amax() < 1e-12, "{torque}");
     }
 }

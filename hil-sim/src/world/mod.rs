@@ -31,6 +31,7 @@
 //! latency_s = 0.01
 //! thrust_scale = 0.85
 //! rotors = { layout = "quad-x", arm_m = 0.3, drag_m = 0.02, max_thrust = 15.0, failure = { rotor = 1, at_s = 9.0, effectiveness = 0.0 } }
+//! rate_loop = { rate_hz = 1000.0, time_constant_s = [0.03, 0.03, 0.03] }
 //! sag = { max_thrust = 30.9, during = { at_s = 15.0, for_s = 2.0 } }
 //!
 //! [cable]                           # in place of the rod: pulls only
@@ -62,17 +63,19 @@ mod ground;
 pub mod integrate;
 pub mod multibody;
 pub mod random;
+mod rate_loop;
 mod rotors;
 pub mod sensors;
 mod tethered;
 mod timing;
 
-pub use actuators::{ActuatorModel, Actuators, Sag};
+pub use actuators::{ActuatorModel, Actuators, Order, Sag};
 pub use body::{Bodies, Body, Rates};
 pub use cable::Cable;
 pub use dryden::{Dryden, Gusts};
 pub use environment::{Air, Environment, PayloadStep, drag};
 pub use ground::Ground;
+pub use rate_loop::RateLoop;
 pub use rotors::{Layout, RotorFailure, Rotors};
 pub use sensors::instruments::{InstrumentModel, Readings};
 pub use sensors::{Channel, Reading, SensorModel, Sensors, Window};
@@ -241,20 +244,27 @@ impl World {
         self.t_s += self.spec.period;
     }
 
-    /// Passes one control period under `command`, given at its start.
+    /// Passes one control period under `command`, given to the rotors at its start.
     #[inline]
     pub fn advance(&mut self, command: &Command<f64>) {
+        self.obey(Order::Wrench(*command));
+    }
+
+    /// Passes one control period under `order`, given at its start. A vehicle without a rate loop
+    /// takes no body rates: what it was told before goes on.
+    #[inline]
+    pub fn obey(&mut self, order: Order) {
         self.step_payload();
         self.body.set_time(self.t_s);
         if let Some(gusts) = &mut self.gusts {
             let mean = self.spec.environment.air.map_or([0.0; 3], |air| air.wind);
             self.air = Vector3::from(mean) + gusts.step();
         }
-        self.actuators.push(self.t_s, command);
+        self.actuators.push(self.t_s, order);
         let end_s = self.t_s + self.spec.period * self.spec.timing.stretch(&mut self.clock);
         // A piece shorter than the clock's rounding ends the period.
         while end_s - self.t_s > 1e-12 {
-            let piece = self.actuators.piece(self.t_s, end_s);
+            let piece = self.actuators.piece(self.t_s, end_s, &self.body);
             self.fly(piece);
             self.t_s += piece;
         }

@@ -68,6 +68,7 @@ struct ControllerFields {
     vehicle: VehicleFields,
     latency_s: f64,
     rotor_lag_s: f64,
+    rate_loop_s: Option<[f64; 3]>,
     observer: ObserverFields,
     limits: Option<LimitFields>,
     supervised: Option<bool>,
@@ -88,6 +89,7 @@ impl Default for ControllerFields {
             vehicle: VehicleFields::default(),
             latency_s: 0.0,
             rotor_lag_s: 0.0,
+            rate_loop_s: None,
             observer: ObserverFields::default(),
             limits: None,
             supervised: None,
@@ -201,6 +203,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
     fields.actuators.check("actuators")?;
     fields.timing.check("timing")?;
     fields.estimator.map_or(Ok(()), |estimator| estimator.check("estimator"))?;
+    let rate_loop_s = rate_loop(fields.controller.rate_loop_s, &fields.actuators)?;
     let params = vehicle_params(&vehicle);
     let flown = controller::Vehicle::new(params).map_err(|error| Invalid::out_of_range("vehicle", error))?;
     let (mut bodies, mut standing) = (None, false);
@@ -250,6 +253,7 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
             zeta: all_within("controller.zeta", zeta, 1e4)?,
             latency_s: within("controller.latency_s", fields.controller.latency_s, 0.0..=0.5)?,
             rotor_lag_s: within("controller.rotor_lag_s", fields.controller.rotor_lag_s, 0.0..=0.5)?,
+            rate_loop_s,
             observer: fields.controller.observer.params()?,
             limits: told_limits,
             supervised: fields.controller.supervised.unwrap_or(!(requests.is_empty() && parameters.is_empty())),
@@ -378,6 +382,22 @@ impl VehicleFields {
 }
 
 /// The paper's 16 coordinates. The chart of (1) ends at cos β = 0 and cos φ = 0.
+/// What the law is told of the loop that the vehicle has: its own time constants, if nothing else.
+fn rate_loop(told: Option<[f64; 3]>, actuators: &Actuators) -> Result<Option<[f64; 3]>, Invalid> {
+    let at = "controller.rate_loop_s";
+    match (actuators.rate_loop, told) {
+        (None, None) => Ok(None),
+        (None, Some(_)) => Err(Invalid::new(at, "there is no [actuators.rate_loop] to give setpoints to")),
+        (Some(rate_loop), told) => {
+            let times = told.unwrap_or(rate_loop.time_constant_s);
+            for (axis, time) in times.into_iter().enumerate() {
+                within(&format!("{at}[{axis}]"), time, 0.0..=5.0)?;
+            }
+            Ok(Some(times))
+        }
+    }
+}
+
 fn initial(at: &str, fields: &InitialFields) -> Result<[f64; 16], Invalid> {
     let field = |name: &str| format!("{at}.{name}");
     let angle = |name: &str, value, limit: f64| within(&field(name), value, -limit..=limit);

@@ -134,6 +134,9 @@ pub struct ControllerSpec {
     pub latency_s: f64,
     /// Time constant of the rotors that the law knows of, s.
     pub rotor_lag_s: f64,
+    /// Time constants of the rate loop that the law gives setpoints to, as it knows them, s; none:
+    /// it commands rotors.
+    pub rate_loop_s: Option<[f64; 3]>,
     /// Its disturbance observers; off as the paper has it.
     pub observer: ObserverParams<f64>,
     /// What it may command.

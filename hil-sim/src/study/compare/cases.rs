@@ -5,7 +5,7 @@ use controller::State;
 
 use crate::describe::scenario::Scenario;
 use crate::world::random::Stream;
-use crate::world::{Air, Gusts, PayloadStep, Sensors};
+use crate::world::{Air, Gusts, PayloadStep, RateLoop, Sensors};
 
 /// One case.
 pub struct Case {
@@ -58,6 +58,11 @@ pub const CASES: &[Case] = &[
     Case { name: "inertia-1.3", title: "inertia 30 % more than told", apply: |s, _| inertia(s, [1.3; 3]) },
     Case { name: "lag", title: "rotor lag 50 ms, known", apply: |s, _| late(s, 0.05, 0.0) },
     Case { name: "latency", title: "latency 10 ms, known", apply: |s, _| late(s, 0.0, 0.01) },
+    Case {
+        name: "rate-loop",
+        title: "above a rate loop of 30 ms with rotors of 30 ms: 100 setpoints a second, 20 ms late, known",
+        apply: |s, _| rate_loop(s),
+    },
     Case { name: "noise", title: "sensor noise", apply: |s, _| s.sensors = Sensors::noisy() },
     Case { name: "lag-latency-noise", title: "lag, latency and noise together", apply: |s, _| hardware(s) },
     Case {
@@ -103,6 +108,16 @@ fn late(scenario: &mut Scenario, lag_s: f64, latency_s: f64) {
     scenario.actuators.latency_s = latency_s;
     scenario.controller.rotor_lag_s = lag_s;
     scenario.controller.latency_s = latency_s;
+}
+
+/// The rotors' lag is the loop's to make good, and no law is told of it.
+fn rate_loop(scenario: &mut Scenario) {
+    let rate_loop = RateLoop::default();
+    scenario.controller.rate_hz = 100.0;
+    scenario.controller.rate_loop_s = Some(rate_loop.time_constant_s);
+    scenario.actuators.rate_loop = Some(rate_loop);
+    late(scenario, 0.03, 0.02);
+    scenario.controller.rotor_lag_s = 0.0;
 }
 
 fn hardware(scenario: &mut Scenario) {
