@@ -85,7 +85,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::Margin(margin)), _) => margin_text(margin),
         (Some(Fault::NotFinite), _) => "law's answer not finite",
         (Some(Fault::NoPath), _) => "no point of the path found",
-        (Some(Fault::Slack), _) => "cable slack",
+        (Some(Fault::Slack), _) => "cable slack, or shorter than VEH_ROD",
         (Some(Fault::PayloadLost), _) => "payload lost",
         (Some(_), _) => "another fault",
         (None, _) => "",

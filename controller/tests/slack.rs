@@ -24,6 +24,7 @@ struct Setting {
     told_mass: f64,
     uav_mass: f64,
     length: f64,
+    told_length: f64,
     /// Of the thrust that is commanded, what acts.
     thrust: f64,
     inertia: [f64; 3],
@@ -36,10 +37,18 @@ const PAPER: Setting = Setting {
     told_mass: 0.5,
     uav_mass: 2.5,
     length: 2.0,
+    told_length: 2.0,
     thrust: 1.0,
     inertia: [0.03, 0.03, 0.05],
     wind: 0.0,
 };
+
+impl Setting {
+    /// With a cable of this length, m, as it is told.
+    const fn on(self, length: f64) -> Self {
+        Self { length, told_length: length, ..self }
+    }
+}
 
 struct World {
     setting: Setting,
@@ -137,7 +146,7 @@ fn flight(setting: Setting, uav: V, load: V, ground: f64) -> Flight<impl Path<f3
     let vehicle = Vehicle::new(VehicleParams {
         payload_mass: setting.told_mass as f32,
         uav_mass: setting.uav_mass as f32,
-        rod_length: setting.length as f32,
+        rod_length: setting.told_length as f32,
         inertia: setting.inertia.map(|j| j as f32),
         gravity: 9.81,
     })
@@ -193,19 +202,13 @@ impl<P: Path<f32>> Flight<P> {
 
 #[test]
 fn landing_sets_down_the_load_and_then_the_uav_beside_it() {
-    let heavy = Setting {
-        payload_mass: 10.0,
-        told_mass: 10.0,
-        uav_mass: 25.0,
-        length: 10.0,
-        inertia: [1.5, 1.5, 2.5],
-        ..PAPER
-    };
+    let heavy =
+        Setting { payload_mass: 10.0, told_mass: 10.0, uav_mass: 25.0, inertia: [1.5, 1.5, 2.5], ..PAPER.on(10.0) };
     for (name, setting) in [
-        ("0.5 m", Setting { length: 0.5, ..PAPER }),
+        ("0.5 m", PAPER.on(0.5)),
         ("2 m", PAPER),
-        ("5 m", Setting { length: 5.0, ..PAPER }),
-        ("15 m", Setting { length: 15.0, ..PAPER }),
+        ("5 m", PAPER.on(5.0)),
+        ("15 m", PAPER.on(15.0)),
         ("1 kg told 0.5", Setting { payload_mass: 1.0, ..PAPER }),
         ("thrust 85 %", Setting { thrust: 0.85, ..PAPER }),
         ("thrust 115 %", Setting { thrust: 1.15, ..PAPER }),
@@ -244,15 +247,15 @@ fn landing_by_the_rod_alone_brings_the_uav_down_as_slowly() {
     };
     let paper = |height| (height, PAPER);
     for (name, (height, setting)) in [
-        ("0.5 m", (3.0, Setting { length: 0.5, ..PAPER })),
-        ("1 m", (3.0, Setting { length: 1.0, ..PAPER })),
+        ("0.5 m", (3.0, PAPER.on(0.5))),
+        ("1 m", (3.0, PAPER.on(1.0))),
         ("2 m", paper(3.0)),
         ("2 m, ground at once", paper(0.02)),
         ("2 m, ground soon", paper(0.3)),
-        ("5 m", (3.0, Setting { length: 5.0, ..PAPER })),
-        ("15 m", (3.0, Setting { length: 15.0, ..PAPER })),
+        ("5 m", (3.0, PAPER.on(5.0))),
+        ("15 m", (3.0, PAPER.on(15.0))),
         ("0.1 kg", (3.0, scaled(0.1, PAPER))),
-        ("10 kg on 10 m", (3.0, scaled(10.0, Setting { length: 10.0, ..PAPER }))),
+        ("10 kg on 10 m", (3.0, scaled(10.0, PAPER.on(10.0)))),
         ("0.1 kg under 2.5", (3.0, Setting { payload_mass: 0.1, told_mass: 0.1, ..PAPER })),
         ("1.5 kg under 2.5", (3.0, Setting { payload_mass: 1.5, told_mass: 1.5, ..PAPER })),
         ("1 kg told 0.5", (3.0, Setting { payload_mass: 1.0, ..PAPER })),
@@ -313,6 +316,22 @@ fn a_load_that_is_not_seen_for_two_seconds_costs_no_height() {
     assert_eq!(flight.supervisor.mode(), Mode::Follow);
 }
 
+/// A cable that is told too long seems slack: it holds, and says why. Told a little too short or too
+/// long it flies.
+#[test]
+fn a_cable_of_another_length_than_told_is_flown_or_refused_in_words() {
+    for (share, flies) in [(0.9, true), (1.08, true), (1.15, false)] {
+        let mut flight = hanging(Setting { told_length: share * PAPER.length, ..PAPER }, 10.0);
+        let mut last = None;
+        for _ in 0..15_000 {
+            last = Some(flight.step(Request::Follow));
+        }
+        let output = last.expect("it flew");
+        let (mode, fault) = if flies { (Mode::Follow, None) } else { (Mode::Hold, Some(Fault::Slack)) };
+        assert_eq!((output.mode, output.fault), (mode, fault), "told {share} of its length");
+    }
+}
+
 #[test]
 fn landing_is_as_slow_as_told_whatever_the_altitude() {
     let mut flight = hanging(PAPER, 3.0);
@@ -336,7 +355,7 @@ fn a_flight_goes_from_ground_to_ground() {
         ("thrust 85 %", Setting { thrust: 0.85, ..PAPER }),
         ("thrust 115 %", Setting { thrust: 1.15, ..PAPER }),
         ("wind", Setting { wind: 2.0, ..PAPER }),
-        ("rope 5 m", Setting { length: 5.0, ..PAPER }),
+        ("rope 5 m", PAPER.on(5.0)),
     ] {
         let mut flight = flight(setting, V::new(0.7, 0.0, 0.0), V::zeros(), 0.0);
         let mut mode = Mode::Off;

@@ -62,7 +62,7 @@ pub enum Fault {
     NotFinite,
     /// No point of the path was found from here.
     NoPath,
-    /// The cable does not pull.
+    /// The cable does not pull, or the load is nearer than the cable was told to be long.
     Slack,
     /// The payload is gone.
     PayloadLost,

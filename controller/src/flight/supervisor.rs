@@ -555,6 +555,10 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 && state.attitude.m33 > T::lit(CALM_TILT)
         });
         self.calm = if is_calm { self.calm + period } else { T::zero() };
+        if self.request == Request::Follow && self.calm >= self.policy.calm && self.cable.is_slack() {
+            // Nothing else keeps it from the path.
+            self.fault = self.fault.or(Some(Fault::Slack));
+        }
         let warning = match state.map(|state| self.standing(state)) {
             None | Some(Standing::Inside) => None,
             Some(Standing::Warning(margin) | Standing::Beyond(margin)) => Some(margin),

@@ -11,7 +11,7 @@ pub fn describe(fault: Fault) -> String {
         Fault::Margin(margin) => format!("margin: {margin:?}"),
         Fault::NotFinite => "answer not finite".to_owned(),
         Fault::NoPath => "no path".to_owned(),
-        Fault::Slack => "cable slack".to_owned(),
+        Fault::Slack => "cable slack, or shorter than told".to_owned(),
         Fault::PayloadLost => "payload lost".to_owned(),
         other => format!("{other:?}").to_lowercase(),
     }
