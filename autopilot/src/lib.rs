@@ -22,15 +22,17 @@ mod control;
 mod epoch;
 mod failsafe;
 mod metadata;
+mod mission;
 mod report;
 mod seen;
 mod server;
 mod settings;
 mod store;
 
-pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive, Notice};
+pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive, MissionState, Notice};
 pub use failsafe::Loss;
 pub use metadata::{File, page as metadata_page};
+pub use mission::{Item, Kind, Memory, Mission, Progress, Refusal};
 pub use server::{Next, Server};
 pub use settings::{Setting, Settings, entries};
 pub use store::{Flash, FlashFault, NotKept, RECORD, Store};

@@ -9,6 +9,7 @@ use rig::{LawNumbers, Rig};
 
 use crate::control::{Absence, Notice};
 use crate::failsafe::Loss;
+use crate::mission::Flown;
 
 /// As long as a STATUSTEXT can be.
 pub type Text = heapless::String<50>;
@@ -127,7 +128,12 @@ pub fn notice(notice: Notice) -> &'static str {
 
 /// Where the last command of `rig`, made on `state`, came from, with the `integral` as it was
 /// before.
-pub fn telemetry(sequence: u32, rig: &Rig<f32>, state: &State<f32>, integral: [f32; 3]) -> LOAD_TELEMETRY_DATA {
+pub fn telemetry(
+    sequence: u32,
+    rig: &Rig<f32, Flown>,
+    state: &State<f32>,
+    integral: [f32; 3],
+) -> LOAD_TELEMETRY_DATA {
     let rig::Telemetry { law, payload_force, uav_force, torque, payload_mass } = rig.telemetry(state);
     let mut telemetry = LOAD_TELEMETRY_DATA {
         sequence,
@@ -156,4 +162,23 @@ pub fn telemetry(sequence: u32, rig: &Rig<f32>, state: &State<f32>, integral: [f
 /// A number that is not finite is sent as zero.
 pub fn number(x: f32) -> f32 {
     if x.is_finite() { x } else { 0.0 }
+}
+
+/// As much of it as fits.
+pub fn cut(what: impl core::fmt::Display) -> Text {
+    let mut text = Text::new();
+    let _ = write!(Cut(&mut text), "{what}");
+    text
+}
+
+/// Writes as much as fits.
+struct Cut<'a>(&'a mut Text);
+
+impl Write for Cut<'_> {
+    fn write_str(&mut self, text: &str) -> core::fmt::Result {
+        for character in text.chars() {
+            self.0.push(character).map_err(|_| core::fmt::Error)?;
+        }
+        Ok(())
+    }
 }

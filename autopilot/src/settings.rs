@@ -7,7 +7,7 @@ const ACTIONS: &[&str] = &["nothing", "hold", "land"];
 const CHANNEL: (f64, f64) = (0.0, 18.0);
 const BUTTON: (f64, f64) = (0.0, 32.0);
 
-const OWN: [Entry<f64>; 17] = [
+const OWN: [Entry<f64>; 20] = [
     Entry::real(
         "LINK_DIALECT",
         "dialect",
@@ -72,6 +72,23 @@ const OWN: [Entry<f64>; 17] = [
     Entry::whole("RC_BTN_FOLLOW", "button", 0.0, BUTTON, "Joystick's button for follow."),
     Entry::whole("RC_BTN_LAND", "button", 0.0, BUTTON, "Joystick's button for land."),
     Entry::whole("RC_BTN_KILL", "button", 0.0, BUTTON, "Joystick's button that stops the rotors."),
+    Entry::real("MIS_SPEED", "speed", "m/s", 2.0, (0.05, 100.0), "Missions: speed where no item says one."),
+    Entry::real(
+        "MIS_CORNER",
+        "corner",
+        "m",
+        2.0,
+        (0.02, 1e3),
+        "Missions: how far from a waypoint its corner's blend begins, where the item says nothing.",
+    ),
+    Entry::real(
+        "MIS_ACC",
+        "acceleration",
+        "m/s^2",
+        1.0,
+        (0.05, 20.0),
+        "Missions: bound of the load's acceleration along the route and across it.",
+    ),
 ];
 static TABLE: [Entry; OWN.len()] = rig::narrowed(&OWN);
 
@@ -112,6 +129,12 @@ impl Setting {
     pub const LAND_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_LAND"));
     /// `RC_BTN_KILL`: that stops the rotors.
     pub const KILL_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_KILL"));
+    /// `MIS_SPEED`: a mission's speed where no item says one, m/s.
+    pub const MISSION_SPEED: Self = Self(rig::index_of(&OWN, "MIS_SPEED"));
+    /// `MIS_CORNER`: likewise its corners, m.
+    pub const MISSION_CORNER: Self = Self(rig::index_of(&OWN, "MIS_CORNER"));
+    /// `MIS_ACC`: the bound of the load's acceleration, m/s².
+    pub const MISSION_ACCELERATION: Self = Self(rig::index_of(&OWN, "MIS_ACC"));
 }
 
 impl Setting {

@@ -7,6 +7,7 @@
 
 mod convert;
 mod decoder;
+mod home;
 
 /// The messages, generated from the dialect's XML.
 #[allow(
@@ -25,6 +26,7 @@ pub use convert::{measured_frame, name, specific_force_of, state_frame, state_of
 pub use decoder::{Decoder, Rejected};
 pub use generated::slung_load as dialect;
 pub use generated::slung_load::MavMessage;
+pub use home::Home;
 
 pub use mavlink_core::Message;
 use mavlink_core::{MAVLinkV2MessageRaw, MavHeader};

@@ -21,6 +21,12 @@ pub const HARMONICS: usize = 8;
 const FAR: (f64, f64) = (ranges::COORDINATE.min, ranges::COORDINATE.max);
 const AMPLITUDES: usize = 3 * HARMONICS;
 
+/// What `PATH_KIND` chooses from: the shapes, and a route, which has no numbers here but a table.
+const KINDS: &[&str] = &["circle", "ellipse", "bent", "superellipse", "tilted", "fourier", "route"];
+
+/// The value of `PATH_KIND` that chooses a route.
+pub const ROUTE: u8 = Shape::ALL.len() as u8;
+
 /// Three components `<name>_1` to `<name>_3`.
 const fn vector(
     name: &str,
@@ -53,7 +59,7 @@ const fn amplitudes(name: &str, field: &'static str, axis: usize, text: &'static
 
 pub(crate) const ENTRIES: &[Entry<f64>] = &concatenated::<65>(&[
     &[
-        Entry::choice("PATH_KIND", "kind", Shape::NAMES, 0, "The curve."),
+        Entry::choice("PATH_KIND", "kind", KINDS, 0, "The curve; a route is the mission's."),
         Entry::of("PATH_RADIUS", ranges::RADIUS, "m", "Circle, of a path or of the tracking law: radius."),
         Entry::of("PATH_P3", ranges::P3, "m", "Circle: p3; negative is above the origin."),
         Entry::of(
@@ -116,7 +122,7 @@ impl Shape {
         [Self::Circle, Self::Ellipse, Self::Bent, Self::Superellipse, Self::Tilted, Self::Fourier];
 
     /// Their names, as in scenario files.
-    pub const NAMES: &[&str] = &["circle", "ellipse", "bent", "superellipse", "tilted", "fourier"];
+    pub const NAMES: &[&str] = KINDS.split_at(Self::ALL.len()).0;
 
     /// The shape that `parameters` choose.
     #[must_use]

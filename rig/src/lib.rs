@@ -27,7 +27,7 @@ mod timing;
 mod vehicle;
 
 pub use actuators::Actuators;
-pub use curve::{AnyCurve, Field, HARMONICS, NoFormula, Shape};
+pub use curve::{AnyCurve, Field, HARMONICS, NoFormula, ROUTE, Shape};
 pub use entry::{Entry, Kind, Name, Refused};
 pub use error::SetupError;
 pub use parameters::Parameters;

@@ -2,7 +2,9 @@
 
 use controller::{OutOfRange, Real};
 
+use crate::curve::ROUTE;
 use crate::entry::{Entry, Refused};
+use crate::parameter;
 use crate::table::{COUNT, Parameter, Run, Tabled};
 
 /// A value for each parameter, within its range.
@@ -79,6 +81,12 @@ impl<T: Real> Parameters<T> {
                 count > value
             })
             .unwrap_or(u8::MAX)
+    }
+
+    /// Whether `PATH_KIND` chooses a route.
+    #[must_use]
+    pub fn is_route(&self) -> bool {
+        self.whole(parameter!("PATH_KIND")) == ROUTE
     }
 
     /// Whether a switch is on.

@@ -6,7 +6,7 @@ use controller::{
     SpeedProfile, Table, Vector3, YawProfile, ranges,
 };
 
-use crate::curve::{AnyCurve, NoFormula};
+use crate::curve::{AnyCurve, NoFormula, ROUTE};
 use crate::entry::Entry;
 use crate::parameters::Parameters;
 use crate::{parameter, run};
@@ -133,10 +133,12 @@ impl<T: Real> ScalarField<T> for NoFormula {
 /// The path that `parameters` describe.
 ///
 /// # Errors
-/// What curve or profile refuse, by the parameter's name where it is one parameter's value.
+/// What curve or profile refuse, by the parameter's name where it is one parameter's value; a route,
+/// which has no parameters.
 pub fn path<T: Real, F, G, const K: usize, S>(
     parameters: &Parameters<T>,
 ) -> Result<AnyPath<T, F, G, K, S>, OutOfRange<T>> {
+    OutOfRange::check("PATH_KIND", parameters.get(parameter!("PATH_KIND")), 0.0, f64::from(ROUTE - 1))?;
     Ok(AnyPath::Profiled(Profiled {
         curve: AnyCurve::new(parameters)?,
         speed: AnySpeed::new(parameters)?,

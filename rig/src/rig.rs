@@ -219,6 +219,35 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         self.actuators().duties(&self.last.command)
     }
 
+    /// The law that follows a path, if that is the one that flies.
+    #[must_use]
+    pub fn following(&self) -> Option<&Follow<T, P>> {
+        match &self.law {
+            Law::Follow(supervisor) => Some(supervisor.law()),
+            #[cfg(feature = "tracking")]
+            Law::Track(..) => None,
+        }
+    }
+
+    /// The same, for what may be changed in flight.
+    pub fn following_mut(&mut self) -> Option<&mut Follow<T, P>> {
+        match &mut self.law {
+            Law::Follow(supervisor) => Some(supervisor.law_mut()),
+            #[cfg(feature = "tracking")]
+            Law::Track(..) => None,
+        }
+    }
+
+    /// The path alone, if one is flown.
+    #[must_use]
+    pub fn into_path(self) -> Option<P> {
+        match self.law {
+            Law::Follow(supervisor) => Some(supervisor.into_law().into_path()),
+            #[cfg(feature = "tracking")]
+            Law::Track(..) => None,
+        }
+    }
+
     /// What turns commands into thrust and torque.
     #[must_use]
     pub fn actuators(&self) -> &Actuators<T> {

@@ -6,6 +6,7 @@ mod control;
 mod failsafe;
 mod ground;
 mod link;
+mod mission;
 mod modes;
 mod station;
 mod store;

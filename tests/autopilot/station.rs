@@ -90,11 +90,14 @@ pub struct Station {
     server: Server,
     decoder: Decoder,
     encoder: Encoder,
+    /// What its clock says.
+    pub time_ns: u64,
 }
 
 impl Station {
     pub fn new(autopilot: Autopilot) -> Self {
-        Self { autopilot, server: Server::new(), decoder: Decoder::new(), encoder: Encoder::new(link::STATION) }
+        let (decoder, encoder) = (Decoder::new(), Encoder::new(link::STATION));
+        Self { autopilot, server: Server::new(), decoder, encoder, time_ns: 0 }
     }
 
     pub fn encode(&mut self, message: &MavMessage) -> Vec<u8> {
@@ -104,10 +107,11 @@ impl Station {
     /// Bytes as they come; the replies, and the answers of lockstep's steps.
     pub fn hear(&mut self, bytes: &[u8]) -> (Vec<MavMessage>, Vec<Answer>) {
         let (mut replies, mut answers) = (Vec::new(), Vec::new());
-        let Self { autopilot, server, decoder, .. } = self;
+        let Self { autopilot, server, decoder, time_ns, .. } = self;
         for &byte in bytes {
             decoder.push(byte, |received| {
-                if let Next::Step(frame) = server.handle(received, 0, autopilot, &mut |message| replies.push(message))
+                if let Next::Step(frame) =
+                    server.handle(received, *time_ns, autopilot, &mut |message| replies.push(message))
                 {
                     answers.push(autopilot.lockstep(&frame));
                 }
@@ -148,8 +152,9 @@ impl Station {
 
     /// The messages that come unasked.
     pub fn messages(&mut self) -> Vec<MavMessage> {
-        let Self { autopilot, server, .. } = self;
-        std::iter::from_fn(|| server.news(autopilot)).collect()
+        let Self { autopilot, server, time_ns, .. } = self;
+        let time_ns = *time_ns;
+        std::iter::from_fn(|| server.news(time_ns, autopilot)).collect()
     }
 }
 

@@ -34,9 +34,9 @@ fn defaults_are_the_controllers() {
 #[test]
 fn the_controller_takes_each_number_up_to_the_table_s_ends() {
     // Those that also depend on others: bands on each other, a law on its gains, the rotors' and
-    // the thrusts' on what can hover.
+    // the thrusts' on what can hover, a route on its table.
     let dependent = |name: &str| {
-        ["ENV_", "ROT_", "LIM_", "K", "CTL_LAW", "VEH_", "FOU_", "PATH_NRM", "PATH_MAJ"]
+        ["ENV_", "ROT_", "LIM_", "K", "CTL_LAW", "VEH_", "FOU_", "PATH_NRM", "PATH_MAJ", "PATH_KIND"]
             .iter()
             .any(|prefix| name.starts_with(prefix))
     };

@@ -3,9 +3,10 @@
 use controller::{Actuation as _, Request};
 use rig::{Rig, SetupError, parameter};
 
-use super::{Autopilot, Drive, Notice};
+use super::{Autopilot, Drive, Notice, Underway};
 use crate::epoch::Epoch;
 use crate::failsafe::Loss;
+use crate::mission::{Flown, NoRig, Refusal};
 use crate::settings::Setting;
 
 /// Arming needs a state no older than this, s.
@@ -14,10 +15,12 @@ const FRESH_S: f32 = 0.5;
 const PRESSED: u8 = 3;
 
 /// Why it is not armed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ArmRefused {
     /// The parameters make no controller.
     Setup(SetupError<f32>),
+    /// The mission is to be flown, and can't be.
+    Mission(Refusal),
     /// Limits and rotors give no more than this share of the hover thrust.
     Weak(f32),
     /// There has been no good state just now.
@@ -33,7 +36,7 @@ pub enum ArmRefused {
 impl ArmRefused {
     /// Whether it may be armed as it is set up, but not now.
     pub(crate) fn is_for_now(&self) -> bool {
-        !matches!(self, Self::Setup(_) | Self::Weak(_))
+        !matches!(self, Self::Setup(_) | Self::Mission(_) | Self::Weak(_))
     }
 }
 
@@ -41,6 +44,7 @@ impl core::fmt::Display for ArmRefused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Setup(error) => error.fmt(f),
+            Self::Mission(refusal) => f.write_str(&refusal.text),
             Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),
             Self::Slow(apart, most) => write!(f, "not armed: states {apart:.2} s apart, POL_COAST {most}"),
@@ -62,11 +66,6 @@ impl Autopilot {
     /// Why not; it stays disarmed.
     pub fn arm(&mut self) -> Result<(), ArmRefused> {
         if !self.is_armed() {
-            let rig = Rig::new(self.settings.rig()).map_err(ArmRefused::Setup)?;
-            let share = rig.actuators().largest_thrust() / rig.vehicle().hover_thrust();
-            if share < self.settings.get(Setting::ARMING_THRUST) {
-                return Err(ArmRefused::Weak(share));
-            }
             if self.is_killed() {
                 return Err(ArmRefused::Killed);
             }
@@ -82,7 +81,14 @@ impl Autopilot {
             if self.drive() == Drive::Flight && apart_s > most {
                 return Err(ArmRefused::Slow(apart_s, most));
             }
+            let rig = self.make_rig()?;
+            let share = rig.actuators().largest_thrust() / rig.vehicle().hover_thrust();
+            if share < self.settings.get(Setting::ARMING_THRUST) {
+                self.mission.take_back(rig);
+                return Err(ArmRefused::Weak(share));
+            }
             self.rig = Some(rig);
+            self.underway = Underway::default();
             self.inbox = None;
             self.epoch = Epoch::default();
             self.newest = None;
@@ -93,10 +99,24 @@ impl Autopilot {
         Ok(())
     }
 
+    fn make_rig(&mut self) -> Result<Rig<f32, Flown>, ArmRefused> {
+        let parameters = self.settings.rig();
+        if parameters.is_route() && !parameters.is_on(parameter!("CTL_LAW")) {
+            return self.mission.rig(&self.settings).map_err(|why| match why {
+                NoRig::Mission(refusal) => ArmRefused::Mission(refusal),
+                NoRig::Setup(error) => ArmRefused::Setup(error),
+            });
+        }
+        let path = rig::path(parameters).map_err(|error| ArmRefused::Setup(error.into()))?;
+        Rig::on(path, parameters).map_err(ArmRefused::Setup)
+    }
+
     /// Rotors off. What was asked for is forgotten.
     pub fn disarm(&mut self) {
         self.stands &= !self.is_flying();
-        self.rig = None;
+        if let Some(rig) = self.rig.take() {
+            self.mission.take_back(rig);
+        }
         self.fault = None;
         self.request = Request::Idle;
         self.last = None;

@@ -15,10 +15,14 @@
 //! sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
 
 mod arming;
+mod mission;
 mod step;
 mod words;
 
+use mission::Underway;
+
 pub use arming::ArmRefused;
+pub use mission::MissionState;
 pub use words::{Absence, Answer, Boot, Counters, Drive, Notice};
 
 use controller::{Fault, Margin, Mode, Request, State};
@@ -27,17 +31,20 @@ use rig::{Output, Rig, parameter};
 
 use crate::epoch::Epoch;
 use crate::failsafe::{Failsafe, Loss};
+use crate::mission::{Flown, Memory, Mission};
 use crate::seen::Navigation;
 use crate::settings::{Setting, Settings};
 
 /// The flight program's control side.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Autopilot {
     settings: Settings,
     boot: Boot,
     counters: Counters,
     /// While armed.
-    rig: Option<Rig<f32>>,
+    rig: Option<Rig<f32, Flown>>,
+    mission: Mission,
+    underway: Underway,
     request: Request,
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
@@ -86,6 +93,8 @@ impl Autopilot {
             boot,
             counters: Counters::default(),
             rig: None,
+            mission: Mission::none(),
+            underway: Underway::default(),
             request: Request::Idle,
             inbox: None,
             navigation: Navigation::new(),
@@ -107,6 +116,13 @@ impl Autopilot {
             overrun: false,
             until_telemetry: 0,
         }
+    }
+
+    /// With memory for missions.
+    #[must_use]
+    pub fn with_memory<const KNOTS: usize>(mut self, memory: &'static mut Memory<KNOTS>) -> Self {
+        self.mission.lend(memory);
+        self
     }
 
     /// The parameters.

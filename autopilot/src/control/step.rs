@@ -5,6 +5,7 @@ use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, L
 use rig::{Output, Rig, parameter};
 
 use super::{Absence, Answer, Autopilot, Drive, Notice};
+use crate::mission::Flown;
 use crate::report;
 use crate::seen::Seen;
 use crate::settings::Setting;
@@ -174,6 +175,7 @@ impl Autopilot {
         {
             answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
         }
+        self.end_mission(mode);
         let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
         self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
         if is_down {
@@ -203,7 +205,7 @@ impl Autopilot {
 }
 
 /// What a good state does to the controller's memory before the step on it.
-fn begin(rig: &mut Rig<f32>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
+fn begin(rig: &mut Rig<f32, Flown>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
     let is_off = rig.mode() == Mode::Off;
     let hover = Command::of_thrust(rig.vehicle().hover_thrust());
     let applied = if is_off { hover } else { rig.output().command };

@@ -6,6 +6,7 @@ use controller::{Mode, Request};
 use link::MavMessage;
 use link::dialect::*;
 
+use super::mission;
 use super::modes::{self, MODES};
 use super::{Next, Server, warning};
 use crate::control::Autopilot;
@@ -29,6 +30,11 @@ impl Server {
         const LAND: u16 = MavCmd::MAV_CMD_NAV_LAND as u16;
         const REBOOT: u16 = MavCmd::MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN as u16;
         const MESSAGE: u16 = MavCmd::MAV_CMD_REQUEST_MESSAGE as u16;
+        const START: u16 = MavCmd::MAV_CMD_MISSION_START as u16;
+        const PAUSE: u16 = MavCmd::MAV_CMD_DO_PAUSE_CONTINUE as u16;
+        const SPEED: u16 = MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16;
+        const CURRENT: u16 = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT as u16;
+        const HOME: u16 = MavCmd::MAV_CMD_GET_HOME_POSITION as u16;
         let mut next = Next::Nothing;
         let mut refused = |reason: &dyn Display, result| {
             send(warning(reason));
@@ -64,6 +70,25 @@ impl Server {
                 MavResult::MAV_RESULT_ACCEPTED
             }
             MESSAGE => self.message(request, autopilot, send),
+            HOME => {
+                let messages = mission::home_messages(autopilot);
+                let is_known = messages.iter().any(Option::is_some);
+                messages.into_iter().flatten().for_each(&mut *send);
+                if is_known { MavResult::MAV_RESULT_ACCEPTED } else { NOT_NOW }
+            }
+            START | PAUSE | SPEED | CURRENT => {
+                let done = match request.command {
+                    START => autopilot.start_mission(),
+                    PAUSE if [0.0, 1.0].contains(&request.param1) => autopilot.pause(request.param1 == 0.0),
+                    PAUSE => Err("param1 is 0 to pause, 1 to go on"),
+                    SPEED => autopilot.change_speed(request.param2),
+                    _ => autopilot.set_current_item(request.param1 as u16),
+                };
+                match done {
+                    Ok(()) => MavResult::MAV_RESULT_ACCEPTED,
+                    Err(reason) => refused(&reason, NOT_NOW),
+                }
+            }
             _ => MavResult::MAV_RESULT_UNSUPPORTED,
         };
         send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command: request.command, result: result as u8 }));
@@ -82,6 +107,9 @@ impl Server {
         const VERSION: f32 = 148.0;
         const LANDED: f32 = 245.0;
         const METADATA: f32 = 397.0;
+        const MISSION: f32 = 42.0;
+        const ORIGIN: f32 = 49.0;
+        const HOME: f32 = 242.0;
         if request.param1 == MODE {
             send(Self::current_mode(autopilot));
         } else if request.param1 == VERSION {
@@ -90,6 +118,13 @@ impl Server {
             send(Self::landed_state(autopilot));
         } else if request.param1 == METADATA {
             send(metadata());
+        } else if request.param1 == MISSION {
+            send(self.mission_current(autopilot));
+        } else if request.param1 == ORIGIN || request.param1 == HOME {
+            let [origin, home] = mission::home_messages(autopilot);
+            let asked = if request.param1 == ORIGIN { origin } else { home };
+            let Some(asked) = asked else { return MavResult::MAV_RESULT_TEMPORARILY_REJECTED };
+            send(asked);
         } else if request.param1 == AVAILABLE && request.param2 == 0.0 {
             self.modes = Some(0);
         } else if request.param1 == AVAILABLE {
@@ -101,6 +136,21 @@ impl Server {
         }
         MavResult::MAV_RESULT_ACCEPTED
     }
+}
+
+/// COMMAND_INT: home, which a float would cut to metres. All else is to be sent as a COMMAND_LONG.
+pub(super) fn command_int(request: &COMMAND_INT_DATA, autopilot: &mut Autopilot, send: &mut impl FnMut(MavMessage)) {
+    let command = request.command;
+    let result = if command != MavCmd::MAV_CMD_DO_SET_HOME as u16 {
+        MavResult::MAV_RESULT_COMMAND_LONG_ONLY
+    } else if request.param1 == 0.0
+        && mission::set_home(([request.x, request.y, (request.z * 1e3) as i32], [0.0; 3]), autopilot, send)
+    {
+        MavResult::MAV_RESULT_ACCEPTED
+    } else {
+        MavResult::MAV_RESULT_DENIED
+    };
+    send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result: result as u8 }));
 }
 
 /// The mode that a command asks for, if it can be.
@@ -148,9 +198,9 @@ fn metadata() -> MavMessage {
 
 /// What the program is and can do.
 fn version() -> MavMessage {
-    /// MAVLink 2, file transfer, and integers in PARAM_SET as their bytes. Signing would be a bit
-    /// here.
-    const CAPABILITIES: u64 = 8192 | 32 | 16;
+    /// Fences, MAVLink 2, file transfer, integers in PARAM_SET as their bytes, and missions. Signing
+    /// would be a bit here.
+    const CAPABILITIES: u64 = 16384 | 8192 | 32 | 16 | 4;
     let number = |text: &str| text.parse::<u32>().unwrap_or_default();
     let [major, minor, patch] =
         [env!("CARGO_PKG_VERSION_MAJOR"), env!("CARGO_PKG_VERSION_MINOR"), env!("CARGO_PKG_VERSION_PATCH")]

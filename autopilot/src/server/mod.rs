@@ -2,11 +2,10 @@
 
 mod commands;
 mod files;
+mod mission;
 mod modes;
 mod parameters;
 mod stick;
-
-use core::fmt::Write;
 
 use controller::{Fault, Margin, Mode};
 use link::dialect::*;
@@ -15,7 +14,9 @@ use link::{Address, MavMessage, Message as _, Rejected};
 use crate::control::{Autopilot, Drive};
 use crate::report;
 use crate::store::NotKept;
+use commands::command_int;
 use files::Files;
+use mission::Transfer;
 use stick::Switches;
 
 /// What a ground station says that it is.
@@ -48,6 +49,7 @@ pub struct Server {
     /// What the pilot's switches said last.
     switches: Switches,
     files: Files,
+    transfer: Transfer,
 }
 
 impl Default for Server {
@@ -69,6 +71,7 @@ impl Server {
             modes: None,
             switches,
             files: Files::new(),
+            transfer: Transfer::new(),
         }
     }
 
@@ -134,10 +137,14 @@ impl Server {
     }
 
     /// A message that nobody asked for: a new mode or fault, or the next parameter of a list. One
-    /// message a call, since a whole list would keep the control step waiting.
-    pub fn news(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
+    /// message a call, since a whole list would keep the control step waiting. `time_ns` is that of
+    /// [`handle`](Self::handle).
+    pub fn news(&mut self, time_ns: u64, autopilot: &Autopilot) -> Option<MavMessage> {
         if let Some(change) = self.change(autopilot) {
             return Some(change);
+        }
+        if let Some(news) = self.mission_news(time_ns, autopilot) {
+            return Some(news);
         }
         if let Some(index) = self.modes {
             let mode = modes::available(index);
@@ -210,6 +217,9 @@ impl Server {
         if !is_for_us(&message) {
             return Next::Nothing;
         }
+        if self.mission(&message, sender, time_ns, autopilot, send) {
+            return Next::Nothing;
+        }
         match message {
             MavMessage::LOAD_STATE(frame) => {
                 if autopilot.drive() == Drive::Lockstep {
@@ -221,10 +231,7 @@ impl Server {
             MavMessage::PARAM_REQUEST_LIST(_) => self.listing = Some(0),
             MavMessage::PARAM_SET(request) => return parameters::set(&request, autopilot, send),
             MavMessage::COMMAND_LONG(request) => return self.command(&request, autopilot, send),
-            MavMessage::COMMAND_INT(COMMAND_INT_DATA { command, .. }) => {
-                let result = MavResult::MAV_RESULT_COMMAND_LONG_ONLY as u8;
-                send(MavMessage::COMMAND_ACK(COMMAND_ACK_DATA { command, result }));
-            }
+            MavMessage::COMMAND_INT(request) => command_int(&request, autopilot, send),
             MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
                 self.files.answer(&request, sender).into_iter().for_each(send);
             }
@@ -268,28 +275,9 @@ fn is_for_us(message: &MavMessage) -> bool {
 }
 
 fn warning(what: impl core::fmt::Display) -> MavMessage {
-    status(MavSeverity::MAV_SEVERITY_WARNING, &cut(what))
+    status(MavSeverity::MAV_SEVERITY_WARNING, &report::cut(what))
 }
 
 fn status(severity: MavSeverity, text: &str) -> MavMessage {
     MavMessage::STATUSTEXT(STATUSTEXT_DATA { severity: severity as u8, text: link::text(text) })
-}
-
-/// As much of it as fits.
-fn cut(what: impl core::fmt::Display) -> report::Text {
-    let mut text = report::Text::new();
-    let _ = write!(Cut(&mut text), "{what}");
-    text
-}
-
-/// Writes as much as fits.
-struct Cut<'a>(&'a mut report::Text);
-
-impl Write for Cut<'_> {
-    fn write_str(&mut self, text: &str) -> core::fmt::Result {
-        for character in text.chars() {
-            self.0.push(character).map_err(|_| core::fmt::Error)?;
-        }
-        Ok(())
-    }
 }

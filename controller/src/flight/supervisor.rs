@@ -156,6 +156,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         &mut self.law
     }
 
+    /// The law alone.
+    pub fn into_law(self) -> L {
+        self.law
+    }
+
     /// The sampled memory.
     pub fn sampler(&self) -> &Sampler<T, A> {
         &self.sampler

@@ -257,8 +257,8 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         let goes_on = self.rested > T::zero() && self.path.go_on();
         if goes_on {
             self.speed_factor.restart();
+            self.rested = T::zero();
         }
-        self.rested = T::zero();
         goes_on
     }
 
@@ -273,6 +273,16 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         if self.rested > dwell {
             self.go_on();
         }
+    }
+
+    /// Whether the payload is at rest at the path's stop.
+    pub fn rests(&self) -> bool {
+        self.rested > T::zero()
+    }
+
+    /// The path alone.
+    pub fn into_path(self) -> P {
+        self.path
     }
 
     /// Clears the integrals and the memory of limits, as in a law just made.

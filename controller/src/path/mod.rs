@@ -44,7 +44,9 @@ pub use field::{Linear, PointingAt, ScalarField};
 pub use fourier::{FourierPath, NEWTON_STEPS};
 pub use harmonics::Harmonics;
 pub use implicit::{Formula, Implicit};
-pub use route::build::{Built, RouteError, RoutePace, SHORTEST_LEG, Waypoint, build_route};
+pub use route::build::{
+    Built, Passage, RouteError, RoutePace, SHORTEST_LEG, Waypoint, build_route, build_route_passing,
+};
 pub use route::{End, Knot, Route, RouteTable, Run, Table};
 pub use speed::{ConstantSpeed, CurvatureLimited, SpeedProfile};
 pub use superellipse::Superellipse;

@@ -22,7 +22,7 @@ use defmt_rtt as _;
 mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use autopilot::{Answer, Autopilot, Boot, Drive, Next, NotKept, Server, Store};
+    use autopilot::{Answer, Autopilot, Boot, Drive, Memory, Next, NotKept, Server, Store};
     use heapless::{Deque, Vec};
     use link::dialect::LOAD_STATE_DATA;
     use link::{Decoder, Encoder, MavMessage};
@@ -85,7 +85,7 @@ mod app {
         }
     }
 
-    #[init]
+    #[init(local = [memory: Memory<{ board::KNOTS }> = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let Board { boot, mut timer, rotors, serial, led, kill, settings, store, watchdog } = board::start();
         clock::start(cx.core.SYST, boot.core_hz);
@@ -94,7 +94,7 @@ mod app {
         if by_watchdog {
             defmt::error!("reset by the watchdog, {=u32} times since power-on", watchdog_resets);
         }
-        let autopilot = Autopilot::with(settings, boot);
+        let autopilot = Autopilot::with(settings, boot).with_memory(cx.local.memory);
         let server = Server::new();
         let mut outbox = Outbox { encoder: Encoder::new(link::CONTROLLER), bytes: Deque::new(), lost: 0 };
         server.greet(&autopilot, &mut |message| outbox.send(&message));
@@ -150,6 +150,10 @@ mod app {
                     board::pend_link();
                 }
             }
+            if due {
+                // The link's questions are asked again in time.
+                board::pend_link();
+            }
             // In lockstep it only shows the watchdog that control lives.
             let wanted_s = if lockstep { LOCKSTEP_PERIOD_S } else { autopilot.period_s() };
             if *period_s != wanted_s {
@@ -204,7 +208,7 @@ mod app {
                 outbox.send(&MavMessage::LOAD_COMMAND(answer.command));
             });
         }
-        let news = (&mut autopilot, &mut server).lock(|autopilot, server| server.news(autopilot));
+        let news = (&mut autopilot, &mut server).lock(|autopilot, server| server.news(clock::now_ns(), autopilot));
         if let Some(news) = &news {
             outbox.lock(|outbox| outbox.send(news));
         }

@@ -4,10 +4,13 @@
 use std::io::{self, ErrorKind};
 use std::time::Instant;
 
-use autopilot::{Autopilot, Boot, Drive, Next, Server};
+use autopilot::{Autopilot, Boot, Drive, Memory, Next, Server};
 use link::{Decoder, Encoder, MavMessage};
 
 use super::Wire;
+
+/// Knots of a mission's route, as on the emulated boards.
+const KNOTS: usize = 8192;
 
 /// Serves one line until its other end closes it. The same code as in the firmware, but for the
 /// interrupts around it.
@@ -19,7 +22,10 @@ use super::Wire;
 /// The line's, but for its regular end.
 pub fn serve(mut wire: impl Wire) -> io::Result<()> {
     let start = Instant::now();
-    let mut autopilot = Autopilot::new(Boot { core_hz: 1_000_000_000, ..Boot::default() });
+    // As long as the process lives, which serves one line or a few.
+    let memory = Box::leak(Box::new(Memory::<KNOTS>::new()));
+    let boot = Boot { core_hz: 1_000_000_000, ..Boot::default() };
+    let mut autopilot = Autopilot::new(boot).with_memory(memory);
     let mut server = Server::new();
     let (mut decoder, mut encoder) = (Decoder::new(), Encoder::new(link::CONTROLLER));
     let mut outbox = Vec::new();
@@ -77,7 +83,8 @@ pub fn serve(mut wire: impl Wire) -> io::Result<()> {
             send(&mut outbox, &Server::landed_state(&autopilot));
             send(&mut outbox, &server.counters(&autopilot, 0));
         }
-        while let Some(news) = server.news(&autopilot) {
+        let time_ns = start.elapsed().as_nanos() as u64;
+        while let Some(news) = server.news(time_ns, &autopilot) {
             send(&mut outbox, &news);
         }
         match wire.write_all(&outbox) {

@@ -129,6 +129,16 @@ pub struct Built {
     pub runs: usize,
 }
 
+/// Where a waypoint is on a route: at the beginning of a span of a run, or where it is nearest to
+/// the waypoint's corner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Passage {
+    /// The run.
+    pub run: usize,
+    /// The span, as [`Route::parameter`](super::Route::parameter) counts them.
+    pub span: usize,
+}
+
 /// Writes the route through `waypoints` into `knots` and `runs`. An open route has one run from
 /// each stop to the next, its ends being stops; a closed one without stops is a single closed run,
 /// and one with stops begins and ends at its first stop.
@@ -142,6 +152,22 @@ pub fn build_route<T: Real>(
     knots: &mut [Knot<T>],
     runs: &mut [Run<T>],
 ) -> Result<Built, RouteError<T>> {
+    build_route_passing(waypoints, is_closed, pace, knots, runs, |_, _| {})
+}
+
+/// The same, telling where the route passes each waypoint, counted from 0, in the order flown. Of a
+/// stop both are told: where the run before ends and where the next one begins.
+///
+/// # Errors
+/// As [`build_route`].
+pub fn build_route_passing<T: Real>(
+    waypoints: &[Waypoint<T>],
+    is_closed: bool,
+    pace: &RoutePace<T>,
+    knots: &mut [Knot<T>],
+    runs: &mut [Run<T>],
+    mut passes: impl FnMut(usize, Passage),
+) -> Result<Built, RouteError<T>> {
     check(waypoints, is_closed, pace)?;
     let count = waypoints.len();
     let stop = waypoints.iter().position(|waypoint| waypoint.stop.is_some());
@@ -149,7 +175,11 @@ pub fn build_route<T: Real>(
     let mut add = |course: Course<'_, T>, heading: &mut Option<T>| {
         let free = knots.get_mut(built.knots..).unwrap_or_default();
         let run = runs.get_mut(built.runs).ok_or(RouteError::Runs)?;
-        let used = course.lay(pace, heading, free)?;
+        let number = built.runs;
+        // The weights at the beginning of a span are about the fourth of its knots.
+        let used = course.lay(pace, heading, free, &mut |waypoint, knot| {
+            passes(waypoint, Passage { run: number, span: knot.saturating_sub(3) });
+        })?;
         let (_, last) = course.waypoint(course.last);
         let dwell = last.stop.unwrap_or_default();
         *run = Run { first: built.knots, knots: used, is_closed: course.is_closed, dwell };
@@ -293,13 +323,14 @@ impl<T: Real> Course<'_, T> {
         pace: &RoutePace<T>,
         heading: &mut Option<T>,
         knots: &mut [Knot<T>],
+        passes: &mut dyn FnMut(usize, usize),
     ) -> Result<usize, RouteError<T>> {
         let mut laying = Laying { knots, used: 0 };
         let mut from = self.corner(self.first)?;
         for index in self.first..self.last {
             let (leg, to) = (self.leg(index)?, self.corner(index.saturating_add(1))?);
             let (_, waypoint) = self.waypoint(index);
-            let (_, next) = self.waypoint(index.saturating_add(1));
+            let (next_number, next) = self.waypoint(index.saturating_add(1));
             let straight = leg.length - from.tangent - to.tangent;
             let grading = Grading::of(straight, from.spacing, to.spacing);
             let knot = |arc: T| {
@@ -316,12 +347,14 @@ impl<T: Real> Course<'_, T> {
                 for beyond in (0..=BEYOND).rev() {
                     laying.push(knot(-spacing * T::lit(beyond as f64)))?;
                 }
+                passes(self.waypoint(index).0, BEYOND);
             }
             if !(from.is_smooth && to.is_smooth) {
                 grading.each(|arc| laying.push(knot(from.tangent + arc)))?;
             }
             if !self.is_closed && index.saturating_add(1) == self.last {
                 let spacing = grading.last();
+                passes(next_number, laying.used);
                 for beyond in 0..=BEYOND {
                     laying.push(knot(leg.length + spacing * T::lit(beyond as f64)))?;
                 }
@@ -337,7 +370,9 @@ impl<T: Real> Course<'_, T> {
                     let offset = leg.along * (sin * to.radius) + to.inwards * ((T::one() - cos) * to.radius);
                     laying.push((start + offset, waypoint.speed.min(next.speed), yaw))?;
                 }
+                passes(next_number, laying.used.saturating_sub(points / 2 + 1));
             } else {
+                passes(next_number, laying.used);
                 laying.push(knot(leg.length))?;
                 if to.is_smooth {
                     laying.pass_through();

@@ -121,6 +121,7 @@ pub struct Route<T, S> {
     anchor: Vector3<T>,
     local: Local<T>,
     search: Search<T>,
+    is_resumed: bool,
 }
 
 /// The curve about `place` of the span of `window`, less its anchor; and the weights there.
@@ -194,6 +195,7 @@ impl<T: Real, S: Table<T>> Route<T, S> {
             anchor: Vector3::zeros(),
             local: [Vector3::zeros(); POINTS],
             search: Search::new(),
+            is_resumed: false,
         };
         for run in 0..runs {
             route.run = run;
@@ -231,6 +233,11 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         &self.table
     }
 
+    /// The table alone.
+    pub fn into_table(self) -> S {
+        self.table
+    }
+
     /// Which run is flown.
     pub fn run(&self) -> usize {
         self.run
@@ -263,6 +270,19 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         let span = parameter.max(T::zero()).to_f64() as usize;
         let span = span.min(last);
         self.settle(Place { span, along: parameter - T::lit(span as f64) });
+    }
+
+    /// The same, joined where it was left, at first at its beginning, rather than where it is
+    /// nearest: for a mission, whose end may be as near as its beginning, and whose legs may cross.
+    pub fn resumed(self) -> Self {
+        Self { is_resumed: true, ..self }
+    }
+
+    /// Whether nothing comes after the run that is flown.
+    pub fn is_last_run(&self) -> bool {
+        let last = self.table.runs().len().saturating_sub(1);
+        let is_at_end = self.run == if self.is_backward { 0 } else { last };
+        is_at_end && matches!(self.end, End::Stay | End::Back(0) | End::Again(0))
     }
 
     /// The same, with something to fly after the last run.
@@ -336,15 +356,22 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         self.search = if is_complete { Search::new() } else { search };
         if is_complete {
             self.settle(self.place_of(search.edge, search.along));
-            for _ in 0..SEARCH_STEPS {
-                let (r, [_, c_1, c_2, ..]) = (self.error(position), self.local);
-                let step = newton(&r, &c_1, &(c_2 + c_2), T::lit(LONGEST));
-                let mut place = self.place;
-                place.advance(step, self.spans(), run.is_closed);
-                self.settle(place);
-            }
+            self.approach(position);
         }
         is_complete
+    }
+
+    /// Goes to the nearest point by Newton's steps from the remembered place, at most four spans
+    /// away.
+    fn approach(&mut self, position: &Vector3<T>) {
+        let Run { is_closed, .. } = self.current();
+        for _ in 0..SEARCH_STEPS {
+            let (r, [_, c_1, c_2, ..]) = (self.error(position), self.local);
+            let step = newton(&r, &c_1, &(c_2 + c_2), T::lit(LONGEST));
+            let mut place = self.place;
+            place.advance(step, self.spans(), is_closed);
+            self.settle(place);
+        }
     }
 
     /// The place whose weights are about the control polygon's edge `edge`: three spans before it.
@@ -422,6 +449,10 @@ impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
+        if self.is_resumed {
+            self.approach(position);
+            return true;
+        }
         self.look(position)
     }
 

@@ -186,6 +186,9 @@ impl Kill for KillPin {
     }
 }
 
+/// Knots of a mission's route.
+pub const KNOTS: usize = 8192;
+
 /// No memory for parameters.
 pub type Memory = NoMemory;
 

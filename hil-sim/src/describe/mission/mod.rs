@@ -1,11 +1,8 @@
 //! Missions of ground stations and maps, as waypoints of N.
 //!
 //! A file says where on the earth, and above what; [`Mission::local`] makes metres of it about a
-//! home, where N has its origin: n1 and n2 from the plane that touches WGS 84 there, by
-//! [`map_3d`], and n3 from the difference of heights, as altimeters and autopilots count them (in
-//! that plane itself a point 5 km away lies 2 m lower). For given heights above the ellipsoid n1
-//! and n2 are exact to rounding; heights above the sea, taken for these, lengthen 5 km by 8 cm at
-//! most, as they do in every autopilot.
+//! home, where N has its origin, by [`Home::local`], as the flight program does of the missions that
+//! ground stations send it.
 
 pub mod columns;
 pub mod csv;
@@ -15,19 +12,9 @@ mod written;
 
 pub use written::{Defaults, c, rust, toml};
 
-use controller::Vector3;
-use map_3d::{Ellipsoid, geodetic2enu};
+pub use link::Home;
 
-/// Where on the earth: latitude and longitude, degrees, and height, m above the sea.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Home {
-    /// Degrees.
-    pub latitude: f64,
-    /// Degrees.
-    pub longitude: f64,
-    /// m.
-    pub altitude: f64,
-}
+use controller::Vector3;
 
 /// Where a point of a mission is, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -281,15 +268,7 @@ fn from_home(home: Home, [latitude, longitude]: [f64; 2], altitude: f64) -> Resu
             )));
         }
     }
-    let (east, north, _) = geodetic2enu(
-        latitude.to_radians(),
-        longitude.to_radians(),
-        altitude,
-        home.latitude.to_radians(),
-        home.longitude.to_radians(),
-        home.altitude,
-        Ellipsoid::WGS84,
-    );
+    let [north, east] = home.local([latitude, longitude], altitude);
     if north.hypot(east) > FURTHEST {
         let away = 1e-3 * north.hypot(east);
         return Err(MissionError(format!("{latitude}, {longitude} is {away:.0} km from home: at most 100")));

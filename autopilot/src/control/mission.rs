@@ -1,0 +1,185 @@
+//! A mission under way: what its end leads to, pause and continue, speed, and the item that comes
+//! next.
+
+use controller::{Mode, Request};
+use link::Home;
+
+use super::Autopilot;
+use crate::mission::{Flown, Item, Kind, Mission, Progress};
+use crate::settings::Settings;
+
+/// How a flight along a mission stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Underway {
+    /// What the route's speed is multiplied by, when it is not paused.
+    factor: f32,
+    is_paused: bool,
+    has_begun: bool,
+    /// Time of rest at the end, s.
+    ended_s: f32,
+}
+
+impl Default for Underway {
+    fn default() -> Self {
+        Self { factor: 1.0, is_paused: false, has_begun: false, ended_s: 0.0 }
+    }
+}
+
+/// What becomes of a mission, as MISSION_STATE has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissionState {
+    /// There is none.
+    None,
+    /// It has not begun.
+    NotStarted,
+    /// It is flown.
+    Active,
+    /// It has begun, and is not being flown.
+    Paused,
+    /// The load rests at its end.
+    Complete,
+}
+
+const NO_ROUTE: &str = "no route is flown";
+
+impl Autopilot {
+    /// The mission that is kept.
+    #[must_use]
+    pub fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
+    /// How far along it the load is, in flight.
+    #[must_use]
+    pub fn progress(&self) -> Option<Progress> {
+        self.mission.progress(self.rig.as_ref()?)
+    }
+
+    /// What becomes of the mission.
+    #[must_use]
+    pub fn mission_state(&self) -> MissionState {
+        let progress = self.progress();
+        let is_flown = matches!(self.mode(), Mode::Join | Mode::Follow) && !self.underway.is_paused;
+        match progress {
+            _ if self.mission.items(Kind::Mission).is_empty() => MissionState::None,
+            Some(Progress { is_complete: true, .. }) => MissionState::Complete,
+            Some(_) if is_flown => MissionState::Active,
+            Some(_) if self.underway.has_begun => MissionState::Paused,
+            _ => MissionState::NotStarted,
+        }
+    }
+
+    /// The mission, to be changed; `None` when armed.
+    pub(crate) fn mission_mut(&mut self) -> Option<(&mut Mission, &Settings)> {
+        if self.is_armed() { None } else { Some((&mut self.mission, &self.settings)) }
+    }
+
+    /// Where on the earth N has its origin.
+    ///
+    /// # Errors
+    /// Not while armed: what is flown is counted from it.
+    pub(crate) fn set_home(&mut self, home: Home) -> Result<(), &'static str> {
+        if self.mission.home() != Some(&home) {
+            self.mission_mut().ok_or("home: not while armed")?.0.set_home(home);
+        }
+        Ok(())
+    }
+
+    /// Flies the mission, from the ground or from the air.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub(crate) fn start_mission(&mut self) -> Result<(), &'static str> {
+        if self.progress().is_none() {
+            return Err("mission: arm with PATH_KIND route first");
+        }
+        if self.mode() == Mode::Idle && !self.navigates {
+            return Err("take-off needs the UAV's own position");
+        }
+        self.request(Request::Follow);
+        Ok(())
+    }
+
+    /// Has the mission go on with the legs since the stop before `item`.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub(crate) fn set_current_item(&mut self, item: u16) -> Result<(), &'static str> {
+        if matches!(self.mode(), Mode::Join | Mode::Follow) {
+            return Err("mission: hold first, then another item");
+        }
+        self.mission.set_current(item, self.rig.as_mut())
+    }
+
+    /// Comes to rest on the path, or goes on: from a pause, or else from a stop.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub(crate) fn pause(&mut self, is_paused: bool) -> Result<(), &'static str> {
+        let factor = if is_paused { 0.0 } else { self.underway.factor };
+        let law = self.rig.as_mut().and_then(rig::Rig::following_mut).ok_or("no path is followed")?;
+        if is_paused != self.underway.is_paused {
+            law.set_speed_factor(factor);
+            self.underway.is_paused = is_paused;
+        } else if !is_paused && law.rests() && !law.go_on() && self.mission.lands() {
+            self.request(Request::Land);
+        }
+        Ok(())
+    }
+
+    /// Flies the route at `speed`, m/s, from now on, where its leg allows that; as it is laid, where
+    /// that is negative.
+    ///
+    /// # Errors
+    /// Why not now.
+    pub(crate) fn change_speed(&mut self, speed: f32) -> Result<(), &'static str> {
+        let next = self.progress().ok_or(NO_ROUTE)?.passed;
+        let most = self.mission.speed_to(next).ok_or(NO_ROUTE)?;
+        let factor = if speed < 0.0 { 1.0 } else { speed / most };
+        // What the vehicle can do was found out for the leg's own.
+        if factor > 1.0 {
+            return Err("speed: above that of the route's leg");
+        }
+        if factor.is_nan() || factor <= 0.0 {
+            return Err("speed: above 0; to rest, pause");
+        }
+        self.underway.factor = factor;
+        if !self.underway.is_paused
+            && let Some(law) = self.rig.as_mut().and_then(rig::Rig::following_mut)
+        {
+            law.set_speed_factor(factor);
+        }
+        Ok(())
+    }
+
+    /// After each step: a mission that ends on the ground lands when it has rested at its end.
+    pub(super) fn end_mission(&mut self, mode: Mode) {
+        let Some(law) = self.rig.as_ref().and_then(rig::Rig::following) else { return };
+        let Flown::Route(route) = law.path() else { return };
+        self.underway.has_begun |= mode == Mode::Follow;
+        if mode != Mode::Follow || !route.is_last_run() {
+            self.underway.ended_s = 0.0;
+            return;
+        }
+        if law.rests() {
+            self.underway.ended_s += self.period_s();
+        }
+        let dwell = controller::Path::dwell(route).unwrap_or(f32::INFINITY);
+        if self.mission.lands() && self.underway.ended_s > dwell && self.request == Request::Follow {
+            self.request(Request::Land);
+        }
+    }
+
+    /// The item that the load is on its way to, or is at.
+    #[must_use]
+    pub(crate) fn current_item(&self) -> u16 {
+        let next = self.progress().map_or(0, |progress| progress.passed);
+        self.mission.item_of(next).unwrap_or_default()
+    }
+
+    /// An item that is kept.
+    #[must_use]
+    pub(crate) fn item(&self, kind: Kind, seq: u16) -> Option<&Item> {
+        self.mission.items(kind).get(usize::from(seq))
+    }
+}

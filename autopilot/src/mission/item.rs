@@ -1,0 +1,224 @@
+//! An item of a mission or fence, as MAVLink has it, and whether a route can have it.
+
+use link::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionResult, MavMissionType};
+
+use crate::report::Text;
+
+pub const WAYPOINT: u16 = MavCmd::MAV_CMD_NAV_WAYPOINT as u16;
+pub const LOITER_UNLIMITED: u16 = MavCmd::MAV_CMD_NAV_LOITER_UNLIM as u16;
+pub const LOITER_TIME: u16 = MavCmd::MAV_CMD_NAV_LOITER_TIME as u16;
+pub const RETURN_TO_LAUNCH: u16 = MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH as u16;
+pub const LAND: u16 = MavCmd::MAV_CMD_NAV_LAND as u16;
+pub const TAKE_OFF: u16 = MavCmd::MAV_CMD_NAV_TAKEOFF as u16;
+pub const SPLINE_WAYPOINT: u16 = MavCmd::MAV_CMD_NAV_SPLINE_WAYPOINT as u16;
+pub const DELAY: u16 = MavCmd::MAV_CMD_NAV_DELAY as u16;
+pub const JUMP: u16 = MavCmd::MAV_CMD_DO_JUMP as u16;
+pub const CHANGE_SPEED: u16 = MavCmd::MAV_CMD_DO_CHANGE_SPEED as u16;
+pub const POLYGON_INSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION as u16;
+pub const POLYGON_OUTSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION as u16;
+pub const CIRCLE_INSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION as u16;
+pub const CIRCLE_OUTSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION as u16;
+
+const GLOBAL: u8 = MavFrame::MAV_FRAME_GLOBAL as u8;
+const GLOBAL_INT: u8 = MavFrame::MAV_FRAME_GLOBAL_INT as u8;
+const RELATIVE: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT as u8;
+const RELATIVE_INT: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
+const LOCAL: u8 = MavFrame::MAV_FRAME_LOCAL_NED as u8;
+
+/// Degrees, and metres, of a step of x and y.
+pub const DEGREES: f64 = 1e-7;
+pub const METRES: f64 = 1e-4;
+
+/// Longest rest, s, and largest corner, m.
+const LONGEST: f32 = 1e5;
+const LARGEST: f32 = 1e3;
+
+/// What is transferred.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The route.
+    Mission,
+    /// The fence.
+    Fence,
+}
+
+impl Kind {
+    /// Of a MAV_MISSION_TYPE.
+    pub fn of(mission_type: u8) -> Option<Self> {
+        const MISSION: u8 = MavMissionType::MAV_MISSION_TYPE_MISSION as u8;
+        const FENCE: u8 = MavMissionType::MAV_MISSION_TYPE_FENCE as u8;
+        match mission_type {
+            MISSION => Some(Self::Mission),
+            FENCE => Some(Self::Fence),
+            _ => None,
+        }
+    }
+
+    /// As a MAV_MISSION_TYPE.
+    pub fn number(self) -> u8 {
+        match self {
+            Self::Mission => MavMissionType::MAV_MISSION_TYPE_MISSION as u8,
+            Self::Fence => MavMissionType::MAV_MISSION_TYPE_FENCE as u8,
+        }
+    }
+}
+
+/// Why items are refused: for the station's program, and for its pilot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// A MAV_MISSION_RESULT.
+    pub result: MavMissionResult,
+    /// In words that fit a STATUSTEXT.
+    pub text: Text,
+}
+
+impl Refusal {
+    pub(crate) fn new(result: MavMissionResult, what: core::fmt::Arguments<'_>) -> Self {
+        Self { result, text: crate::report::cut(what) }
+    }
+
+    pub(crate) fn invalid(what: core::fmt::Arguments<'_>) -> Self {
+        Self::new(MavMissionResult::MAV_MISSION_INVALID, what)
+    }
+
+    pub(crate) fn no_space(what: core::fmt::Arguments<'_>) -> Self {
+        Self::new(MavMissionResult::MAV_MISSION_NO_SPACE, what)
+    }
+}
+
+/// An item as it was sent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Item {
+    /// A MAV_CMD.
+    pub command: u16,
+    /// A MAV_FRAME.
+    pub frame: u8,
+    /// Kept for the station.
+    pub current: u8,
+    /// Kept for the station.
+    pub autocontinue: u8,
+    /// The command's first four parameters.
+    pub params: [f32; 4],
+    /// Latitude in 1e-7 degrees, or n1 in 1e-4 m.
+    pub x: i32,
+    /// Longitude in 1e-7 degrees, or n2 in 1e-4 m.
+    pub y: i32,
+    /// Height, or n3, m.
+    pub z: f32,
+}
+
+impl Item {
+    /// Of a message.
+    pub fn of(item: &MISSION_ITEM_INT_DATA) -> Self {
+        let &MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, x, y, z, .. } = item;
+        let params = [item.param1, item.param2, item.param3, item.param4];
+        Self { command, frame, current, autocontinue, params, x, y, z }
+    }
+
+    /// As a message.
+    pub fn message(&self, seq: u16, kind: Kind, target: link::Address) -> MISSION_ITEM_INT_DATA {
+        let Self { command, frame, current, autocontinue, params, x, y, z } = *self;
+        let [param1, param2, param3, param4] = params;
+        let (target_system, target_component) = target;
+        MISSION_ITEM_INT_DATA {
+            param1,
+            param2,
+            param3,
+            param4,
+            x,
+            y,
+            z,
+            seq,
+            command,
+            target_system,
+            target_component,
+            frame,
+            current,
+            autocontinue,
+            mission_type: kind.number(),
+        }
+    }
+
+    /// Whether a mission can have it, as its `number`-th.
+    pub fn check(&self, kind: Kind, number: usize) -> Result<(), Refusal> {
+        use MavMissionResult as R;
+        let Self { command, frame, params: [first, second, ..], z, .. } = *self;
+        let within = |what: &str, value: f32, most: f32, result| {
+            if (0.0..=most).contains(&value) {
+                return Ok(());
+            }
+            Err(Refusal::new(result, format_args!("item {number}: {what} {value} not in 0 to {most}")))
+        };
+        match (kind, command) {
+            (Kind::Mission, WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF | LAND) => {
+                if ![GLOBAL, GLOBAL_INT, RELATIVE, RELATIVE_INT, LOCAL].contains(&frame) {
+                    let text = format_args!("item {number}: frame {frame} not supported");
+                    return Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED_FRAME, text));
+                }
+                self.check_place(number)?;
+                if command != LAND && (z.is_nan() || z.abs() > 1e5) {
+                    let text = format_args!("item {number}: height {z} m");
+                    return Err(Refusal::new(R::MAV_MISSION_INVALID_PARAM7, text));
+                }
+                if matches!(command, WAYPOINT | SPLINE_WAYPOINT | LOITER_TIME) {
+                    within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1)?;
+                }
+                if command == WAYPOINT {
+                    within("radius", second, LARGEST, R::MAV_MISSION_INVALID_PARAM2)?;
+                }
+                Ok(())
+            }
+            (Kind::Mission, DELAY) => within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
+            (Kind::Mission, CHANGE_SPEED) if second > 0.0 => {
+                within("speed", second, 100.0, R::MAV_MISSION_INVALID_PARAM2)
+            }
+            // -1: as it is, -2: the usual one.
+            (Kind::Mission, CHANGE_SPEED) if second <= 0.0 => Ok(()),
+            (Kind::Mission, CHANGE_SPEED) => within("speed", second, 100.0, R::MAV_MISSION_INVALID_PARAM2),
+            (Kind::Mission, RETURN_TO_LAUNCH) => Ok(()),
+            (Kind::Mission, JUMP) => within("jump to", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
+            (Kind::Fence, POLYGON_INSIDE | POLYGON_OUTSIDE) => {
+                self.check_place(number)?;
+                within("corners", first, 1e3, R::MAV_MISSION_INVALID_PARAM1)
+            }
+            (Kind::Fence, CIRCLE_INSIDE | CIRCLE_OUTSIDE) => {
+                self.check_place(number)?;
+                within("radius", first, 1e5, R::MAV_MISSION_INVALID_PARAM1)
+            }
+            _ => {
+                let text = format_args!("item {number}: command {command} not supported");
+                Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED, text))
+            }
+        }
+    }
+
+    fn check_place(&self, number: usize) -> Result<(), Refusal> {
+        if self.is_local() || !self.is_placed() {
+            return Ok(());
+        }
+        let far = |name, value: i32, most: u32, result| {
+            if value.unsigned_abs() <= most {
+                return Ok(());
+            }
+            let degrees = f64::from(value) * DEGREES;
+            Err(Refusal::new(result, format_args!("item {number}: {name} {degrees:.1} degrees")))
+        };
+        far("latitude", self.x, 900_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)?;
+        far("longitude", self.y, 1_800_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y)
+    }
+
+    /// Its place is in N.
+    pub fn is_local(&self) -> bool {
+        self.frame == LOCAL
+    }
+
+    /// It says where on the earth: zeros and the largest number are none.
+    pub fn is_placed(&self) -> bool {
+        (self.x, self.y) != (0, 0) && self.x != i32::MAX && self.y != i32::MAX
+    }
+
+    /// Its height is above the sea.
+    pub fn is_above_sea(&self) -> bool {
+        matches!(self.frame, GLOBAL | GLOBAL_INT)
+    }
+}

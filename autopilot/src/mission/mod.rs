@@ -1,0 +1,374 @@
+//! A mission: the route that a ground station draws, and where along it the load is.
+//!
+//! ```text
+//! items ──check──▶ kept ──about home──▶ waypoints ──build_route──▶ knots ──arm──▶ the rig's path
+//! ```
+//!
+//! The knots are built into memory that the board lends, while not armed. Armed, the rig has them.
+
+mod item;
+mod lay;
+
+pub use item::{DEGREES, Item, Kind, Refusal};
+
+use controller::{Built, Follow, Knot, Mode, Passage, Route, RouteError, RoutePace, Run, Table, build_route_passing};
+use link::Home;
+use link::dialect::MavMissionResult;
+use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError};
+
+use crate::settings::{Setting, Settings};
+use lay::{Course, Waypoints};
+
+/// Most items of a mission, and of a fence.
+pub const ITEMS: usize = 128;
+/// Most waypoints: an item each, and the way back to the first.
+const STOPS: usize = ITEMS + 1;
+
+/// Items of a mission or fence.
+pub type Items = heapless::Vec<Item, ITEMS>;
+
+/// The path that the program flies, of parameters or of a mission.
+pub type Flown<S = Laid> = AnyPath<f32, NoFormula, NoFormula, HARMONICS, S>;
+
+/// Memory for a route of `KNOTS` knots, 60 bytes each: some 10 a waypoint, and as many more for each
+/// doubling of a leg's length.
+#[derive(Debug)]
+pub struct Memory<const KNOTS: usize> {
+    knots: [Knot<f32>; KNOTS],
+    runs: [Run<f32>; STOPS],
+    lists: Lists,
+}
+
+/// All that there is of a mission but its route.
+#[derive(Debug)]
+struct Lists {
+    mission: Items,
+    fence: Items,
+    /// The items of an upload that have come.
+    coming: Items,
+    waypoints: Waypoints,
+    marks: heapless::Vec<Mark, STOPS>,
+}
+
+impl Lists {
+    fn kept(&mut self, kind: Kind) -> &mut Items {
+        match kind {
+            Kind::Mission => &mut self.mission,
+            Kind::Fence => &mut self.fence,
+        }
+    }
+
+    /// Has what has come in place of what is kept, or the other way round.
+    fn swap(&mut self, kind: Kind) {
+        let Self { mission, fence, coming, .. } = self;
+        core::mem::swap(coming, if kind == Kind::Mission { mission } else { fence });
+    }
+}
+
+impl<const KNOTS: usize> Memory<KNOTS> {
+    /// With nothing in it.
+    #[must_use]
+    pub const fn new() -> Self {
+        let knot = Knot { point: [0.0; 3], step: [0.0; 3], normals: [[0.0; 3]; 2], speed: [0.0; 2], yaw: 0.0 };
+        let run = Run { first: 0, knots: 0, is_closed: false, dwell: 0.0 };
+        let lists = Lists {
+            mission: Items::new(),
+            fence: Items::new(),
+            coming: Items::new(),
+            waypoints: Waypoints::new(),
+            marks: heapless::Vec::new(),
+        };
+        Self { knots: [knot; KNOTS], runs: [run; STOPS], lists }
+    }
+}
+
+impl<const KNOTS: usize> Default for Memory<KNOTS> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A route in lent memory.
+#[derive(Debug)]
+pub struct Laid {
+    knots: &'static mut [Knot<f32>],
+    runs: &'static mut [Run<f32>],
+    built: Built,
+}
+
+impl Table<f32> for Laid {
+    #[inline]
+    fn knots(&self) -> &[Knot<f32>] {
+        self.knots
+    }
+
+    #[inline]
+    fn runs(&self) -> &[Run<f32>] {
+        self.runs.get(..self.built.runs).unwrap_or_default()
+    }
+}
+
+/// The numbers that items leave out.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    speed: f32,
+    corner: f32,
+    acceleration: f32,
+}
+
+impl Pace {
+    fn of(settings: &Settings) -> Self {
+        Self {
+            speed: settings.get(Setting::MISSION_SPEED),
+            corner: settings.get(Setting::MISSION_CORNER),
+            acceleration: settings.get(Setting::MISSION_ACCELERATION),
+        }
+    }
+}
+
+/// Where the route passes a waypoint, with the speed of the leg that leads there, m/s.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    item: u16,
+    at: Passage,
+    speed: f32,
+}
+
+/// A mission, its fence, and the home that both are counted from.
+#[derive(Debug)]
+pub struct Mission {
+    /// Not there where the board lends no memory.
+    lists: Option<&'static mut Lists>,
+    /// Nor while a rig has it.
+    laid: Option<Laid>,
+    home: Option<Home>,
+    course: Course,
+    /// The run that is flown first.
+    first: usize,
+}
+
+/// How far a mission is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Progress {
+    /// Waypoints that the load has passed, or rests at.
+    pub passed: usize,
+    /// It rests where nothing comes after.
+    pub is_complete: bool,
+}
+
+impl Mission {
+    pub(crate) const fn none() -> Self {
+        let course = Course { is_closed: false, end: controller::End::Stay, lands: false };
+        Self { lists: None, laid: None, home: None, course, first: 0 }
+    }
+
+    pub(crate) fn lend<const KNOTS: usize>(&mut self, memory: &'static mut Memory<KNOTS>) {
+        let Memory { knots, runs, lists } = memory;
+        self.lists = Some(lists);
+        self.laid = Some(Laid { knots, runs, built: Built::default() });
+    }
+
+    /// The items that are kept.
+    #[must_use]
+    pub fn items(&self, kind: Kind) -> &[Item] {
+        match (&self.lists, kind) {
+            (Some(lists), Kind::Mission) => &lists.mission,
+            (Some(lists), Kind::Fence) => &lists.fence,
+            (None, _) => &[],
+        }
+    }
+
+    fn marks(&self) -> &[Mark] {
+        self.lists.as_ref().map_or(&[], |lists| &lists.marks)
+    }
+
+    /// Where N has its origin.
+    #[must_use]
+    pub fn home(&self) -> Option<&Home> {
+        self.home.as_ref()
+    }
+
+    /// Whether it lands where it ends.
+    pub(crate) fn lands(&self) -> bool {
+        self.course.lands
+    }
+
+    pub(crate) fn set_home(&mut self, home: Home) {
+        self.home = Some(home);
+    }
+
+    /// Begins to take items in.
+    ///
+    /// # Errors
+    /// There is no memory for them.
+    pub(crate) fn begin(&mut self) -> Result<(), Refusal> {
+        self.lists.as_mut().ok_or_else(no_memory)?.coming.clear();
+        Ok(())
+    }
+
+    /// How many items have come.
+    pub(crate) fn coming(&self) -> usize {
+        self.lists.as_ref().map_or(0, |lists| lists.coming.len())
+    }
+
+    /// Takes the next item in.
+    ///
+    /// # Errors
+    /// No mission or fence can have it.
+    pub(crate) fn take(&mut self, kind: Kind, item: Item) -> Result<(), Refusal> {
+        item.check(kind, self.coming())?;
+        let lists = self.lists.as_mut().ok_or_else(no_memory)?;
+        lists.coming.push(item).map_err(|_| Refusal::no_space(format_args!("mission: too many items")))
+    }
+
+    /// Keeps the items that have come in place of what there was. Returns what there is to say about
+    /// it.
+    ///
+    /// # Errors
+    /// They make no route; nothing has changed.
+    pub(crate) fn keep(&mut self, kind: Kind, settings: &Settings) -> Result<Option<Refusal>, Refusal> {
+        self.lists.as_mut().ok_or_else(no_memory)?.swap(kind);
+        match self.lay(settings) {
+            Ok(()) => {
+                self.first = 0;
+                Ok(None)
+            }
+            // It is laid again when it is to be flown: the home may come later.
+            Err(refusal) if refusal.result == MavMissionResult::MAV_MISSION_ERROR => Ok(Some(refusal)),
+            Err(refusal) => {
+                if let Some(lists) = &mut self.lists {
+                    lists.swap(kind);
+                }
+                let _ = self.lay(settings);
+                Err(refusal)
+            }
+        }
+    }
+
+    /// Forgets what there is of a kind.
+    pub(crate) fn clear(&mut self, kind: Kind, settings: &Settings) {
+        if let Some(lists) = &mut self.lists {
+            lists.kept(kind).clear();
+        }
+        self.first = 0;
+        let _ = self.lay(settings);
+    }
+
+    /// Lays the route, if there is a mission.
+    fn lay(&mut self, settings: &Settings) -> Result<(), Refusal> {
+        let Self { lists, home, laid, course, .. } = self;
+        let Lists { mission, waypoints, marks, .. } = &mut **lists.as_mut().ok_or_else(no_memory)?;
+        marks.clear();
+        if mission.is_empty() {
+            return Ok(());
+        }
+        let laid = laid.as_mut().ok_or_else(no_memory)?;
+        let pace = Pace::of(settings);
+        *course = waypoints.lay(mission, home.as_ref(), &pace)?;
+        let (all, numbers) = (&waypoints.all, &waypoints.items);
+        let route_pace = RoutePace { acceleration: pace.acceleration, ..RoutePace::default() };
+        let mut speed = pace.speed;
+        let built = build_route_passing(all, course.is_closed, &route_pace, laid.knots, laid.runs, |waypoint, at| {
+            // A stop is where the run before ends; of its beginning the next one is told again.
+            let item = numbers.get(waypoint).copied().unwrap_or_default();
+            if marks.last().is_none_or(|mark| mark.item != item) {
+                let _ = marks.push(Mark { item, at, speed });
+            }
+            speed = all.get(waypoint).map_or(speed, |waypoint| waypoint.speed);
+        });
+        let number = |waypoint: usize| numbers.get(waypoint).copied().unwrap_or_default();
+        laid.built = built.map_err(|error| match error {
+            RouteError::Knots | RouteError::Runs => {
+                Refusal::no_space(format_args!("the route is too long for this board"))
+            }
+            RouteError::TooFew => Refusal::invalid(format_args!("a mission needs at least two places")),
+            RouteError::SharpTurn(at) => {
+                Refusal::invalid(format_args!("item {}: turns over 150 deg, needs a rest", number(at)))
+            }
+            RouteError::ShortLeg(at) => Refusal::invalid(format_args!("item {}: next one too near", number(at))),
+            RouteError::Waypoint(at, error) => Refusal::invalid(format_args!("item {}: {error}", number(at))),
+            error => Refusal::invalid(format_args!("{error}")),
+        })?;
+        Route::new(&*laid).map_err(|error| Refusal::invalid(format_args!("route: {error}")))?;
+        Ok(())
+    }
+
+    /// The rig that flies the mission.
+    pub(crate) fn rig(&mut self, settings: &Settings) -> Result<Rig<f32, Flown>, NoRig> {
+        if self.items(Kind::Mission).is_empty() {
+            let text = format_args!("PATH_KIND is a route, and there is no mission");
+            return Err(NoRig::Mission(Refusal::new(MavMissionResult::MAV_MISSION_ERROR, text)));
+        }
+        self.lay(settings).map_err(NoRig::Mission)?;
+        // Whatever is refused is refused of a borrowed table: a lent one would be lost with it.
+        let borrowed = self.laid.as_ref().map(Route::new);
+        let Some(Ok(route)) = borrowed else { return Err(NoRig::Mission(no_memory())) };
+        Rig::on(Flown::Route(route), settings.rig()).map_err(NoRig::Setup)?;
+        let Some(laid) = self.laid.take() else { return Err(NoRig::Mission(no_memory())) };
+        let mut route = Route::new(laid).map_err(|error| NoRig::Setup(error.into()))?;
+        route = route.resumed().with_end(self.course.end);
+        route.begin_run(self.first);
+        Rig::on(Flown::Route(route), settings.rig()).map_err(NoRig::Setup)
+    }
+
+    /// Takes the memory back from a rig that is done with.
+    pub(crate) fn take_back(&mut self, rig: Rig<f32, Flown>) {
+        if let Some(Flown::Route(route)) = rig.into_path() {
+            self.laid = Some(route.into_table());
+        }
+    }
+
+    /// Where `rig` is along the mission, if it flies that.
+    #[must_use]
+    pub(crate) fn progress(&self, rig: &Rig<f32, Flown>) -> Option<Progress> {
+        let law = rig.following()?;
+        let Flown::Route(route) = law.path() else { return None };
+        let (run, parameter) = (route.run(), route.parameter());
+        // In hold the law does not see what becomes of the load.
+        let rests = law.rests() && rig.mode() == Mode::Follow;
+        let is_passed = |mark: &&Mark| {
+            let Passage { run: of, span } = mark.at;
+            of < run || of == run && (rests || span as f32 <= parameter)
+        };
+        let passed = self.marks().iter().take_while(is_passed).count();
+        Some(Progress { passed, is_complete: rests && route.is_last_run() })
+    }
+
+    /// The item of the `index`-th waypoint, or of the last one.
+    #[must_use]
+    pub(crate) fn item_of(&self, index: usize) -> Option<u16> {
+        self.marks().get(index).or(self.marks().last()).map(|mark| mark.item)
+    }
+
+    /// The speed of the leg to the `index`-th waypoint, m/s.
+    #[must_use]
+    pub(crate) fn speed_to(&self, index: usize) -> Option<f32> {
+        self.marks().get(index).or(self.marks().last()).map(|mark| mark.speed)
+    }
+
+    /// Has the mission go on with the run that leads to `item`.
+    pub(crate) fn set_current(&mut self, item: u16, rig: Option<&mut Rig<f32, Flown>>) -> Result<(), &'static str> {
+        if usize::from(item) >= self.items(Kind::Mission).len() {
+            return Err("mission: no such item");
+        }
+        let Some(mark) = self.marks().iter().find(|mark| mark.item >= item) else {
+            return Err("mission: not laid yet");
+        };
+        self.first = mark.at.run;
+        if let Some(Flown::Route(route)) = rig.and_then(Rig::following_mut).map(Follow::path_mut) {
+            route.begin_run(self.first);
+        }
+        Ok(())
+    }
+}
+
+/// Why a mission makes no rig.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum NoRig {
+    Mission(Refusal),
+    Setup(SetupError<f32>),
+}
+
+fn no_memory() -> Refusal {
+    Refusal::no_space(format_args!("this board has no memory for missions"))
+}

@@ -1,0 +1,549 @@
+//! Missions by MAVLink's protocol: what is sent up is kept to the bit, whatever the line loses; what
+//! makes no route is refused in words; and what is kept is flown.
+
+use autopilot::{Autopilot, Boot, Item, Kind, Memory, Setting};
+use controller::{Command, Mode, State, Vector3};
+use hil_sim::world::multibody::{Loads, Multibody};
+use hil_sim::world::random::{Purpose, Stream};
+use link::MavMessage;
+use link::dialect::*;
+use rig::{ROUTE, parameter};
+use witness::plant::VehicleParameters;
+
+use crate::station::{Station, frame_of, set, texts};
+
+const ACCEPTED: u8 = MavResult::MAV_RESULT_ACCEPTED as u8;
+const NOT_NOW: u8 = MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8;
+const KEPT: MavMissionResult = MavMissionResult::MAV_MISSION_ACCEPTED;
+const LOCAL: u8 = MavFrame::MAV_FRAME_LOCAL_NED as u8;
+const RELATIVE: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
+const PERIOD_S: f64 = 0.002;
+
+/// An autopilot that is to fly missions, not armed.
+fn station() -> Station {
+    let memory = Box::leak(Box::new(Memory::<4096>::new()));
+    let mut autopilot = Autopilot::new(Boot::default()).with_memory(memory);
+    autopilot.settings_mut().unwrap().set(Setting::DRIVE, 2.0).unwrap();
+    set(&mut autopilot, parameter!("PATH_KIND"), f32::from(ROUTE));
+    Station::new(autopilot)
+}
+
+fn item(command: MavCmd, place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
+    MISSION_ITEM_INT_DATA {
+        command: command as u16,
+        frame: LOCAL,
+        autocontinue: 1,
+        param4: f32::NAN,
+        x: (place[0] * 1e4) as i32,
+        y: (place[1] * 1e4) as i32,
+        z: place[2],
+        ..MISSION_ITEM_INT_DATA::DEFAULT
+    }
+}
+
+fn waypoint(place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
+    item(MavCmd::MAV_CMD_NAV_WAYPOINT, place)
+}
+
+fn rest(place: [f32; 3], seconds: f32) -> MISSION_ITEM_INT_DATA {
+    MISSION_ITEM_INT_DATA { param1: seconds, ..waypoint(place) }
+}
+
+fn action(command: MavCmd, param1: f32, param2: f32) -> MISSION_ITEM_INT_DATA {
+    MISSION_ITEM_INT_DATA { param1, param2, ..item(command, [0.0; 3]) }
+}
+
+/// A line that loses a share of the frames either way.
+struct Lossy {
+    share: f64,
+    random: Stream,
+}
+
+impl Lossy {
+    fn none() -> Self {
+        Self { share: 0.0, random: Stream::new(1, 0, Purpose::Draw) }
+    }
+
+    fn loses(&mut self) -> bool {
+        self.random.unit() < self.share
+    }
+}
+
+/// Uploads as stations do: the count again, and the last item again, where no answer comes for half a
+/// second. The outcome, and what was said.
+fn upload(
+    station: &mut Station,
+    items: &[MISSION_ITEM_INT_DATA],
+    kind: MavMissionType,
+    line: &mut Lossy,
+) -> (u8, Vec<String>) {
+    let mission_type = kind as u8;
+    let count = MISSION_COUNT_DATA { count: items.len() as u16, mission_type, ..MISSION_COUNT_DATA::DEFAULT };
+    let mut question = MavMessage::MISSION_COUNT(count);
+    let (mut said, mut waits) = (Vec::new(), u32::MAX);
+    for _ in 0..20_000 {
+        // Every 10 ms.
+        station.time_ns += 10_000_000;
+        waits = waits.saturating_add(1);
+        let mut heard = if waits > 50 && !std::mem::replace(&mut waits, 0).eq(&u32::MAX) && !line.loses() {
+            station.say(&question)
+        } else {
+            Vec::new()
+        };
+        loop {
+            heard.extend(station.messages());
+            let messages = std::mem::take(&mut heard);
+            if messages.is_empty() {
+                break;
+            }
+            said.extend(texts(&messages));
+            for message in messages {
+                match message {
+                    _ if line.loses() => {}
+                    MavMessage::MISSION_ACK(ack) => {
+                        assert_eq!(ack.mission_type, mission_type);
+                        return (ack.mavtype, said);
+                    }
+                    MavMessage::MISSION_REQUEST_INT(request) => {
+                        assert_eq!((request.target_system, request.target_component), link::STATION);
+                        let seq = request.seq;
+                        let item = items[usize::from(seq)].clone();
+                        question = MavMessage::MISSION_ITEM_INT(MISSION_ITEM_INT_DATA { seq, mission_type, ..item });
+                        waits = 0;
+                        if !line.loses() {
+                            heard.extend(station.say(&question));
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+    }
+    panic!("no end of an upload")
+}
+
+/// Sends a mission over a good line, which is kept.
+fn send(station: &mut Station, items: &[MISSION_ITEM_INT_DATA]) {
+    let (result, said) = upload(station, items, MavMissionType::MAV_MISSION_TYPE_MISSION, &mut Lossy::none());
+    assert_eq!((result, said), (KEPT as u8, vec![]));
+}
+
+/// Reads it back, asking again for what is lost.
+fn download(station: &mut Station, kind: MavMissionType, line: &mut Lossy) -> Vec<MISSION_ITEM_INT_DATA> {
+    let mission_type = kind as u8;
+    let ask = |station: &mut Station, question: MavMessage, line: &mut Lossy| loop {
+        let lost = line.loses();
+        let replies = if lost { vec![] } else { station.say(&question) };
+        if let Some(reply) = replies.into_iter().next().filter(|_| !line.loses()) {
+            return reply;
+        }
+    };
+    let list = MISSION_REQUEST_LIST_DATA { mission_type, ..MISSION_REQUEST_LIST_DATA::DEFAULT };
+    let MavMessage::MISSION_COUNT(count) = ask(station, MavMessage::MISSION_REQUEST_LIST(list), line) else {
+        panic!("no count")
+    };
+    let item = |seq| {
+        let request = MISSION_REQUEST_INT_DATA { seq, mission_type, ..MISSION_REQUEST_INT_DATA::DEFAULT };
+        match ask(station, MavMessage::MISSION_REQUEST_INT(request), line) {
+            MavMessage::MISSION_ITEM_INT(item) => item,
+            other => panic!("{other:?}"),
+        }
+    };
+    (0..count.count).map(item).collect()
+}
+
+type Bits = (u16, [u8; 3], [u32; 5], [i32; 2]);
+
+/// All bits but those of whom it is for, and its number.
+fn bits_of(items: &[MISSION_ITEM_INT_DATA]) -> Vec<Bits> {
+    let bits = |item: &MISSION_ITEM_INT_DATA| {
+        let floats = [item.param1, item.param2, item.param3, item.param4, item.z].map(f32::to_bits);
+        (item.command, [item.frame, item.current, item.autocontinue], floats, [item.x, item.y])
+    };
+    items.iter().map(bits).collect()
+}
+
+/// What the autopilot keeps, as [`bits_of`] has it.
+fn kept(station: &Station) -> Vec<Bits> {
+    let items = station.autopilot.mission().items(Kind::Mission).iter();
+    let bits = |item: &Item| {
+        let [a, b, c, d] = item.params.map(f32::to_bits);
+        (
+            item.command,
+            [item.frame, item.current, item.autocontinue],
+            [a, b, c, d, item.z.to_bits()],
+            [item.x, item.y],
+        )
+    };
+    items.map(bits).collect()
+}
+
+#[test]
+fn what_is_sent_up_is_kept_to_the_bit_whatever_the_line_loses() {
+    for seed in 0..20 {
+        let mut line = Lossy { share: 0.05 + 0.01 * seed as f64, random: Stream::new(seed, 0, Purpose::Draw) };
+        let mut random = Stream::new(seed, 1, Purpose::Draw);
+        let items: Vec<_> = (0..100)
+            .map(|number| {
+                let place = [10.0 * number as f32, 20.0 * random.unit() as f32, -10.0 - random.unit() as f32];
+                let seconds = if number % 10 == 9 { 1.5 } else { 0.0 };
+                let current = u8::from(number == 0);
+                MISSION_ITEM_INT_DATA { current, param2: random.unit() as f32, ..rest(place, seconds) }
+            })
+            .collect();
+        let mut station = station();
+        let kind = MavMissionType::MAV_MISSION_TYPE_MISSION;
+        let (result, said) = upload(&mut station, &items, kind, &mut line);
+        assert_eq!((result, said), (KEPT as u8, vec![]), "{seed}");
+        let back = download(&mut station, kind, &mut line);
+        assert_eq!(bits_of(&back), bits_of(&items), "{seed}");
+        assert_eq!(station.autopilot.mission().items(Kind::Mission).len(), 100);
+    }
+}
+
+#[test]
+fn an_upload_that_ends_halfway_changes_nothing() {
+    let mut station = station();
+    let old = [waypoint([0.0, 0.0, -10.0]), waypoint([20.0, 0.0, -10.0])];
+    send(&mut station, &old);
+    let count = MISSION_COUNT_DATA { count: 3, ..MISSION_COUNT_DATA::DEFAULT };
+    let asked = station.say(&MavMessage::MISSION_COUNT(count));
+    assert!(matches!(&asked[..], [MavMessage::MISSION_REQUEST_INT(request)] if request.seq == 0), "{asked:?}");
+    // It is asked for again, and at last given up.
+    let mut asked = 0;
+    let ended = loop {
+        station.time_ns += 100_000_000;
+        let mut ended = None;
+        for message in station.messages() {
+            match message {
+                MavMessage::MISSION_REQUEST_INT(request) => asked += u32::from(request.seq == 0),
+                MavMessage::MISSION_ACK(ack) => ended = Some(ack.mavtype),
+                _ => {}
+            }
+        }
+        if let Some(ended) = ended {
+            break ended;
+        }
+    };
+    assert_eq!((asked, ended), (20, MavMissionResult::MAV_MISSION_OPERATION_CANCELLED as u8));
+    assert_eq!(kept(&station), bits_of(&old));
+    // An item that was not asked for is none.
+    assert_eq!(station.say(&MavMessage::MISSION_ITEM_INT(waypoint([1.0; 3]))), []);
+}
+
+#[test]
+fn what_makes_no_route_is_refused_by_item_and_in_words() {
+    use MavCmd::*;
+    use MavMissionResult as R;
+    let line = [[0.0, 0.0, -10.0], [20.0, 0.0, -10.0], [40.0, 0.0, -10.0]].map(waypoint);
+    let with = |at: usize, item: MISSION_ITEM_INT_DATA| {
+        let mut items = line.to_vec();
+        items.insert(at, item);
+        items
+    };
+    let frame = |frame: u8| MISSION_ITEM_INT_DATA { frame, ..waypoint([10.0, 0.0, -10.0]) };
+    let earth = |x, y| MISSION_ITEM_INT_DATA { x, y, ..frame(RELATIVE) };
+    let command = |command: u16| MISSION_ITEM_INT_DATA { command, ..waypoint([10.0, 0.0, -10.0]) };
+    let cases = [
+        (with(1, command(201)), R::MAV_MISSION_UNSUPPORTED, "item 1: command 201 not supported"),
+        (with(2, command(18)), R::MAV_MISSION_UNSUPPORTED, "item 2: command 18 not supported"),
+        (with(1, frame(10)), R::MAV_MISSION_UNSUPPORTED_FRAME, "item 1: frame 10 not supported"),
+        (with(1, frame(7)), R::MAV_MISSION_UNSUPPORTED_FRAME, "item 1: frame 7 not supported"),
+        (with(1, rest([9.0, 0.0, -10.0], -1.0)), R::MAV_MISSION_INVALID_PARAM1, "item 1: rest -1 not in 0 to 100000"),
+        (with(1, earth(910_000_000, 1)), R::MAV_MISSION_INVALID_PARAM5_X, "item 1: latitude 91.0 degrees"),
+        (with(1, earth(1, -1_810_000_000)), R::MAV_MISSION_INVALID_PARAM6_Y, "item 1: longitude -181.0 degrees"),
+        (with(1, waypoint([9.0, 0.0, f32::NAN])), R::MAV_MISSION_INVALID_PARAM7, "item 1: height NaN m"),
+        (with(2, waypoint([10.0, 0.1, -10.0])), R::MAV_MISSION_INVALID, "item 1: turns over 150 deg, needs a rest"),
+        (
+            with(1, action(MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0)),
+            R::MAV_MISSION_INVALID,
+            "item 2: behind the mission's end",
+        ),
+        (with(3, action(MAV_CMD_DO_JUMP, 1.0, 3.0)), R::MAV_MISSION_INVALID, "item 3: jumps only to the first one"),
+        (line[..1].to_vec(), R::MAV_MISSION_INVALID, "a mission needs at least two places"),
+    ];
+    for (items, result, words) in cases {
+        let mut station = station();
+        send(&mut station, &line);
+        let answer = upload(&mut station, &items, MavMissionType::MAV_MISSION_TYPE_MISSION, &mut Lossy::none());
+        assert_eq!(answer, (result as u8, vec![words.to_owned()]), "{words}");
+        assert_eq!(kept(&station), bits_of(&line), "{words}");
+    }
+    // Too many, rally points, partial lists.
+    let mut station = station();
+    let count = |count, mission_type| {
+        MavMessage::MISSION_COUNT(MISSION_COUNT_DATA { count, mission_type, ..MISSION_COUNT_DATA::DEFAULT })
+    };
+    for (question, result, words) in [
+        (count(129, 0), R::MAV_MISSION_NO_SPACE, "mission: 129 items, at most 128"),
+        (count(2, 2), R::MAV_MISSION_UNSUPPORTED, "mission: routes and fences alone"),
+        (
+            MavMessage::MISSION_WRITE_PARTIAL_LIST(MISSION_WRITE_PARTIAL_LIST_DATA::DEFAULT),
+            R::MAV_MISSION_UNSUPPORTED,
+            "mission: no partial lists",
+        ),
+    ] {
+        let replies = station.say(&question);
+        assert_eq!(texts(&replies), [words]);
+        assert!(matches!(replies.last(), Some(MavMessage::MISSION_ACK(ack)) if ack.mavtype == result as u8));
+    }
+    // A board without memory has no missions.
+    let mut bare = Station::new(Autopilot::new(Boot::default()));
+    let replies = bare.say(&count(2, 0));
+    assert_eq!(texts(&replies), ["this board has no memory for missions"]);
+}
+
+/// A vehicle under an autopilot, by its states.
+struct Flight {
+    station: Station,
+    body: Multibody,
+    sequence: u32,
+    /// What was said, and the items that were reached.
+    said: Vec<String>,
+    reached: Vec<u16>,
+    states: Vec<u8>,
+}
+
+impl Flight {
+    fn at(station: Station, place: [f64; 3]) -> Self {
+        let state = State::at_rest(Vector3::from(place));
+        let body = Multibody::new(VehicleParameters::default(), &state);
+        Self { station, body, sequence: 0, said: vec![], reached: vec![], states: vec![] }
+    }
+
+    fn step(&mut self) {
+        self.sequence += 1;
+        self.station.time_ns += 2_000_000;
+        self.station.autopilot.receive(&frame_of(&self.body.state().cast(), self.sequence));
+        let command = self.station.autopilot.tick().command;
+        let command =
+            Command { thrust: f64::from(command.thrust), torque: Vector3::from(command.torque).map(f64::from) };
+        if self.station.autopilot.is_armed() {
+            self.body.advance(PERIOD_S, |_| command, |_, _| Loads::none());
+        }
+        for message in self.station.messages() {
+            self.said.extend(texts(std::slice::from_ref(&message)));
+            match message {
+                MavMessage::MISSION_ITEM_REACHED(item) => self.reached.push(item.seq),
+                MavMessage::MISSION_CURRENT(current) if self.states.last() != Some(&current.mission_state) => {
+                    self.states.push(current.mission_state);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn fly(&mut self, seconds: f64) {
+        for _ in 0..(seconds / PERIOD_S) as u32 {
+            self.step();
+        }
+    }
+
+    fn fly_until(&mut self, what: &str, mut is_so: impl FnMut(&Self) -> bool) {
+        for _ in 0..300_000 {
+            self.step();
+            if is_so(self) {
+                return;
+            }
+        }
+        panic!("never {what}: {:?} {:?}", self.said, self.reached)
+    }
+
+    fn place(&self) -> Vector3<f64> {
+        self.body.state().position
+    }
+
+    fn command(&mut self, command: MavCmd, param1: f32, param2: f32) -> (u8, Vec<String>) {
+        self.station.command(command, param1, param2)
+    }
+
+    /// Takes the vehicle over in flight, to hold.
+    fn arm(&mut self) {
+        self.station.ask(LoadMode::LOAD_MODE_HOLD);
+        self.step();
+        assert_eq!(self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0), (ACCEPTED, vec![]));
+        self.fly(1.0);
+        assert_eq!(self.station.autopilot.mode(), Mode::Hold);
+    }
+}
+
+#[test]
+fn a_mission_is_flown_with_rests_pauses_holds_and_speeds() {
+    let mut station = station();
+    let corners = [[0.0, 0.0, -10.0], [15.0, 0.0, -10.0], [15.0, 15.0, -12.0], [0.0, 15.0, -12.0]];
+    send(
+        &mut station,
+        &[
+            waypoint(corners[0]),
+            rest(corners[1], 1.0),
+            action(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, 3.0),
+            waypoint(corners[2]),
+            rest(corners[3], 0.0),
+        ],
+    );
+    let mut flight = Flight::at(station, [0.5, -0.5, -10.0]);
+    assert_eq!(flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0).0, NOT_NOW);
+    flight.arm();
+    assert_eq!(flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0), (ACCEPTED, vec![]));
+    flight.fly_until("the second item", |flight| flight.reached == [0, 1]);
+    let at = flight.place() - Vector3::from(corners[1].map(f64::from));
+    // At rest is 10 mm/s: the stop's rate of 0.5/s leaves 20 mm.
+    assert!(at.norm() < 0.021, "{at}");
+    // On the way to the third it pauses, goes on slower, holds, and goes on where it was.
+    flight.fly_until("under way", |flight| flight.place().y > 5.0);
+    assert_eq!(flight.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, 0.0, 0.0), (ACCEPTED, vec![]));
+    flight.fly(12.0);
+    assert!(flight.body.state().velocity.norm() < 1e-3, "{}", flight.body.state().velocity);
+    let paused = flight.place();
+    assert_eq!(flight.states.last(), Some(&(MissionState::MISSION_STATE_PAUSED as u8)));
+    assert_eq!(
+        flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, 4.0),
+        (NOT_NOW, vec!["speed: above that of the route's leg".to_owned()])
+    );
+    assert_eq!(flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, 0.5).0, ACCEPTED);
+    assert_eq!(flight.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, 1.0, 0.0), (ACCEPTED, vec![]));
+    flight.fly(8.0);
+    let speed = flight.body.state().velocity.norm();
+    assert!((0.1..0.5).contains(&speed) && flight.place().y > paused.y, "{speed}");
+    flight.station.ask(LoadMode::LOAD_MODE_HOLD);
+    flight.fly(5.0);
+    let held = flight.place();
+    assert_eq!(flight.station.autopilot.mode(), Mode::Hold);
+    assert_eq!(flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, -2.0).0, ACCEPTED);
+    flight.station.ask(LoadMode::LOAD_MODE_FOLLOW);
+    flight.fly(2.0);
+    assert!((flight.place() - held).norm() < 3.0);
+    flight.fly_until("the end", |flight| flight.states.last() == Some(&(MissionState::MISSION_STATE_COMPLETE as u8)));
+    assert_eq!(flight.reached, [0, 1, 3, 4]);
+    flight.fly(10.0);
+    let at = flight.place() - Vector3::from(corners[3].map(f64::from));
+    assert!(at.norm() < 1e-3, "{at}");
+    assert_eq!(flight.station.autopilot.mode(), Mode::Follow);
+    // Denied while it flies; and the memory is there again after it.
+    let denied = upload(
+        &mut flight.station,
+        &[waypoint([0.0; 3]), waypoint([9.0; 3])],
+        MavMissionType::MAV_MISSION_TYPE_MISSION,
+        &mut Lossy::none(),
+    );
+    assert_eq!(denied.0, MavMissionResult::MAV_MISSION_DENIED as u8);
+    for _ in 0..3 {
+        flight.station.autopilot.disarm();
+        flight.arm();
+    }
+}
+
+#[test]
+fn a_mission_begins_at_its_beginning_and_loops_as_often_as_it_says() {
+    // Its end is nearer than its beginning.
+    let corners = [[0.0, 0.0, -10.0], [8.0, 0.0, -10.0], [8.0, 8.0, -10.0], [0.0, 8.0, -10.0], [0.0, 0.8, -10.0]];
+    let mut items: Vec<_> = corners.map(waypoint).to_vec();
+    items.push(action(MavCmd::MAV_CMD_DO_JUMP, 0.0, 1.0));
+    let mut station = station();
+    send(&mut station, &items);
+    let mut flight = Flight::at(station, [0.0, 1.0, -10.0]);
+    flight.arm();
+    flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0);
+    flight.fly_until("the end", |flight| flight.states.last() == Some(&(MissionState::MISSION_STATE_COMPLETE as u8)));
+    // Where it does not rest, the way back is the next round's.
+    assert_eq!(flight.reached, [0, 1, 2, 3, 4, 0, 1, 2, 3, 4, 5]);
+    assert!(flight.place().xy().norm() < 0.021, "{}", flight.place());
+}
+
+#[test]
+fn a_mission_waits_lands_and_goes_to_another_item_when_told() {
+    let mut station = station();
+    send(
+        &mut station,
+        &[
+            waypoint([0.0, 0.0, -30.0]),
+            item(MavCmd::MAV_CMD_NAV_LOITER_UNLIM, [10.0, 0.0, -30.0]),
+            rest([10.0, 10.0, -30.0], 0.5),
+            action(MavCmd::MAV_CMD_NAV_RETURN_TO_LAUNCH, 0.0, 0.0),
+        ],
+    );
+    let mut flight = Flight::at(station, [0.0, 0.0, -30.0]);
+    flight.arm();
+    flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0);
+    flight.fly_until("the second item", |flight| flight.reached == [0, 1]);
+    flight.fly(10.0);
+    assert_eq!(flight.reached, [0, 1]);
+    assert_eq!(
+        flight.command(MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT, 3.0, 0.0),
+        (NOT_NOW, vec!["mission: hold first, then another item".to_owned()])
+    );
+    flight.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, 1.0, 0.0);
+    flight.fly_until("landing", |flight| flight.station.autopilot.mode() == Mode::Land);
+    assert_eq!(flight.reached, [0, 1, 2, 3]);
+    assert!(flight.place().xy().norm() < 0.05, "{}", flight.place());
+    // Back to the second leg from there.
+    flight.station.ask(LoadMode::LOAD_MODE_HOLD);
+    flight.fly(5.0);
+    let current = flight.station.say(&MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA {
+        seq: 2,
+        ..MISSION_SET_CURRENT_DATA::DEFAULT
+    }));
+    assert!(matches!(&current[..], [MavMessage::MISSION_CURRENT(current)] if current.seq == 2), "{current:?}");
+    flight.reached.clear();
+    flight.station.ask(LoadMode::LOAD_MODE_FOLLOW);
+    flight.fly_until("landing", |flight| flight.station.autopilot.mode() == Mode::Land);
+    assert!(flight.reached.ends_with(&[2, 3]), "{:?}", flight.reached);
+}
+
+#[test]
+fn places_on_the_earth_are_those_of_the_importer() {
+    // Edmonton, Quito, Ushuaia, and near the date line; to 5 km away.
+    for (seed, (lat, lon, alt)) in
+        [(53.527, -113.529, 668.0), (-0.1807, -78.4678, 2850.0), (-54.8, -68.3, 10.0), (65.0, 179.99, 0.0)]
+            .into_iter()
+            .enumerate()
+    {
+        let mut random = Stream::new(seed as u64, 0, Purpose::Draw);
+        let home = link::Home { latitude: lat, longitude: lon, altitude: alt };
+        for _ in 0..200 {
+            let mut spread = || random.unit() * 2.0 - 1.0;
+            let (place, up) = ([lat + 0.04 * spread(), lon + 0.06 * spread()], 500.0 * spread());
+            let [north, east] = home.local(place, alt + up);
+            let enu = map_3d::geodetic2enu(
+                place[0].to_radians(),
+                place[1].to_radians(),
+                alt + up,
+                lat.to_radians(),
+                lon.to_radians(),
+                alt,
+                map_3d::Ellipsoid::WGS84,
+            );
+            let off = (north - enu.1).hypot(east - enu.0);
+            assert!(off < 1e-6, "{off}");
+        }
+    }
+    // Without a home it is kept, and not flown; with one it is, at the same places as local items.
+    let mut station = station();
+    let earth = |x, y, z| MISSION_ITEM_INT_DATA { frame: RELATIVE, x, y, z, ..waypoint([0.0; 3]) };
+    let items = [earth(535_270_000, -1_135_290_000, 10.0), earth(535_280_000, -1_135_290_000, 12.0)];
+    let (result, said) = upload(&mut station, &items, MavMissionType::MAV_MISSION_TYPE_MISSION, &mut Lossy::none());
+    assert_eq!((result, said), (KEPT as u8, vec!["item 0: on the earth, but no home is set".to_owned()]));
+    let mut flight = Flight::at(station, [0.0, 0.0, -10.0]);
+    flight.step();
+    let refused = flight.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    assert_eq!(refused.1, ["item 0: on the earth, but no home is set"]);
+    let home = SET_GPS_GLOBAL_ORIGIN_DATA {
+        latitude: 535_270_000,
+        longitude: -1_135_290_000,
+        altitude: 668_000,
+        ..SET_GPS_GLOBAL_ORIGIN_DATA::DEFAULT
+    };
+    let told = flight.station.say(&MavMessage::SET_GPS_GLOBAL_ORIGIN(home));
+    assert!(
+        matches!(&told[..], [MavMessage::GPS_GLOBAL_ORIGIN(origin), MavMessage::HOME_POSITION(home)]
+            if origin.latitude == 535_270_000 && home.altitude == 668_000),
+        "{told:?}"
+    );
+    flight.arm();
+    flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0);
+    flight.fly_until("the end", |flight| flight.states.last() == Some(&(MissionState::MISSION_STATE_COMPLETE as u8)));
+    flight.fly(10.0);
+    // A thousandth of a degree of the meridian, 680 m above the sea.
+    let at = flight.place() - Vector3::new(111.308, 0.0, -12.0);
+    assert!(at.norm() < 0.01, "{at}");
+}
