@@ -7,7 +7,7 @@
 
 use controller::{State, Vector3};
 use hil_sim::describe::scenario::Scenario;
-use hil_sim::fly::flight::Control;
+use hil_sim::fly::flight::{Control, Moment};
 use hil_sim::fly::judge::judge;
 use hil_sim::study::campaign::{ApproachFields, pilot};
 use hil_sim::world::Seed;
@@ -224,6 +224,25 @@ fn a_payload_told_wrong_is_learnt() {
         })
         .collect();
     hold_to(&rows, 1);
+}
+
+/// From the first second on, in which the observers settle: what they have found becomes mass two
+/// seconds after the law has begun, and the thrust does not notice.
+#[test]
+fn a_mass_that_has_been_learnt_is_flown_without_a_bump() {
+    for mass in [1.5, 0.25] {
+        let scenario = Flight { mass, ..Flight::default() }.scenario();
+        let start = State::at_rest(Vector3::new(5.5, 0.0, -10.0));
+        let mut pilot = pilot(&scenario.controller, &ApproachFields::default()).expect("numbers in range");
+        let (mut last, mut largest) = (None, 0.0_f64);
+        let watch = &mut |moment: &Moment<'_>| {
+            let Some(decision) = moment.decision.filter(|_| moment.t_s > 1.0) else { return };
+            let thrust = decision.command.thrust;
+            largest = largest.max(last.replace(thrust).map_or(0.0, |last: f64| (thrust / last - 1.0).abs()));
+        };
+        judge(&scenario, start, Seed::default(), None, Control::alone(), &mut pilot, watch);
+        assert!(largest < 0.01, "{mass} kg told 0.5: the thrust jumps by {largest} of itself");
+    }
 }
 
 #[test]

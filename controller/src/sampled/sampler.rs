@@ -146,8 +146,24 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[inline(always)]
     fn weigh(&mut self, lambda: T) {
         let Memory { vehicle, weighed, weight, observer, last, period, .. } = &mut self.memory;
+        let was_known = weight.is_known();
         let share = weight.learn(lambda, observer.estimate().payload.dot(&last.rod), *period);
         weighed.weigh(vehicle, share);
+        if weight.is_known() && !was_known {
+            self.unburden();
+        }
+    }
+
+    /// What everything weighs has just been found: the observers need not hold it up any more. Held
+    /// up twice, a load of twice the mass that was told would be thrown up by as much as it weighs.
+    #[cold]
+    #[inline(never)]
+    fn unburden(&mut self) {
+        let Memory { vehicle, weighed, last, actuators, observer, .. } = &mut self.memory;
+        let thrust = actuators.applied().thrust;
+        let mut known = *observer.estimate();
+        known.payload += last.rod * (lambda(vehicle, last, thrust) - lambda(weighed, last, thrust));
+        observer.keep(known);
     }
 
     /// Starts from a stated ζ; until the first command the thrust is (3.5) and the torque zero.
