@@ -9,7 +9,8 @@
 //! ```
 //!
 //! Where the UAV's own navigation comes as messages of its own, the newest of each is what is
-//! measured at the next step.
+//! measured at the next step; where nothing sees the load, an estimator finds it from those, if
+//! `EST_LOAD` has it do so.
 //!
 //! The controller is a [`Rig`](rig::Rig) made of parameters; here stand only when it is stepped and
 //! what the link hears of it.
@@ -20,6 +21,7 @@
 
 mod control;
 mod epoch;
+mod estimate;
 mod failsafe;
 mod metadata;
 mod mission;
@@ -30,6 +32,7 @@ mod settings;
 mod store;
 
 pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive, MissionState, Notice};
+pub use estimate::Unseen;
 pub use failsafe::Loss;
 pub use metadata::{File, page as metadata_page};
 pub use mission::{Item, Kind, Memory, Mission, Progress, Refusal};

@@ -3,11 +3,13 @@
 use core::fmt::Write;
 
 use controller::{Channel, Fault, Margin, Mode, State};
+use estimator::Validity;
 use link::dialect::{LOAD_TELEMETRY_DATA, LoadFault, LoadMode};
 
 use rig::{LawNumbers, Rig};
 
 use crate::control::{Absence, Notice};
+use crate::estimate::Unseen;
 use crate::failsafe::Loss;
 use crate::mission::Flown;
 
@@ -73,6 +75,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::State(_) | Fault::NoState), None) if mode == Mode::Idle => "",
         (Some(Fault::NoState), Some(Absence::Stale)) => "stale states",
         (Some(Fault::NoState), Some(Absence::Frozen)) => "frozen states",
+        (Some(Fault::NoState), Some(Absence::Unseen(unseen))) => unseen_text(unseen),
         (Some(Fault::NoState), _) => "no state",
         (Some(Fault::State(channel)), _) => match channel {
             Channel::Position => "bad position",
@@ -99,6 +102,18 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         _ => write!(text, "{name}: {fault}"),
     };
     text
+}
+
+fn unseen_text(unseen: Unseen) -> &'static str {
+    match unseen {
+        Unseen::Navigation => "no navigation of the UAV",
+        Unseen::Imu => "no HIGHRES_IMU",
+        Unseen::Fix => "no fix (EST_FIX_T)",
+        Unseen::Heading => "no heading",
+        Unseen::Rod(Validity::Slack) => "cable slack",
+        Unseen::Rod(Validity::Inconsistent) => "rod and thrust disagree",
+        Unseen::Rod(_) => "rod not known yet",
+    }
 }
 
 fn margin_text(margin: Margin) -> &'static str {

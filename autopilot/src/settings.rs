@@ -3,11 +3,13 @@
 
 use rig::{Entry, Parameter, Parameters, Refused, Tabled as _};
 
+use crate::estimate::params;
+
 const ACTIONS: &[&str] = &["nothing", "hold", "land"];
 const CHANNEL: (f64, f64) = (0.0, 18.0);
 const BUTTON: (f64, f64) = (0.0, 32.0);
 
-const OWN: [Entry<f64>; 20] = [
+const PROGRAM: &[Entry<f64>] = &[
     Entry::real(
         "LINK_DIALECT",
         "dialect",
@@ -90,6 +92,9 @@ const OWN: [Entry<f64>; 20] = [
         "Missions: bound of the load's acceleration along the route and across it.",
     ),
 ];
+/// The program's own, one group behind the other.
+const GROUPS: &[&[Entry<f64>]] = &[PROGRAM, params::ENTRIES];
+const OWN: [Entry<f64>; PROGRAM.len() + params::ENTRIES.len()] = rig::concatenated(GROUPS);
 static TABLE: [Entry; OWN.len()] = rig::narrowed(&OWN);
 
 /// One of the program's own parameters.
@@ -98,46 +103,51 @@ pub struct Setting(usize);
 
 impl Setting {
     /// `SYS_SIM`: what drives the control step, a [`Drive`](crate::Drive).
-    pub const DRIVE: Self = Self(rig::index_of(&OWN, "SYS_SIM"));
+    pub const DRIVE: Self = Self::named("SYS_SIM");
     /// `TLM_EVERY`: steps between two telemetry frames.
-    pub const TELEMETRY_EVERY: Self = Self(rig::index_of(&OWN, "TLM_EVERY"));
+    pub const TELEMETRY_EVERY: Self = Self::named("TLM_EVERY");
     /// `ARM_THRUST`: the share of the hover thrust that must be there for arming.
-    pub const ARMING_THRUST: Self = Self(rig::index_of(&OWN, "ARM_THRUST"));
+    pub const ARMING_THRUST: Self = Self::named("ARM_THRUST");
     /// `FS_GCS_T`: after how long a ground station is lost, s.
-    pub const STATION_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_GCS_T"));
+    pub const STATION_TIMEOUT: Self = Self::named("FS_GCS_T");
     /// `FS_GCS_ACT`: what is done then.
-    pub const STATION_ACTION: Self = Self(rig::index_of(&OWN, "FS_GCS_ACT"));
+    pub const STATION_ACTION: Self = Self::named("FS_GCS_ACT");
     /// `FS_RC_T`: after how long a stick or radio is lost, s.
-    pub const STICK_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_RC_T"));
+    pub const STICK_TIMEOUT: Self = Self::named("FS_RC_T");
     /// `FS_RC_ACT`: what is done then.
-    pub const STICK_ACTION: Self = Self(rig::index_of(&OWN, "FS_RC_ACT"));
+    pub const STICK_ACTION: Self = Self::named("FS_RC_ACT");
     /// `FS_BAT_PCT`: below what a battery is low, %.
-    pub const BATTERY_LEAST: Self = Self(rig::index_of(&OWN, "FS_BAT_PCT"));
+    pub const BATTERY_LEAST: Self = Self::named("FS_BAT_PCT");
     /// `FS_BAT_ACT`: what is done then.
-    pub const BATTERY_ACTION: Self = Self(rig::index_of(&OWN, "FS_BAT_ACT"));
+    pub const BATTERY_ACTION: Self = Self::named("FS_BAT_ACT");
     /// `FS_BLIND_T`: after how long without a state the rotors stop, s.
-    pub const BLIND_TIMEOUT: Self = Self(rig::index_of(&OWN, "FS_BLIND_T"));
+    pub const BLIND_TIMEOUT: Self = Self::named("FS_BLIND_T");
     /// `RC_MODE_CH`: the radio channel of the mode switch.
-    pub const MODE_CHANNEL: Self = Self(rig::index_of(&OWN, "RC_MODE_CH"));
+    pub const MODE_CHANNEL: Self = Self::named("RC_MODE_CH");
     /// `RC_KILL_CH`: the radio channel that stops the rotors.
-    pub const KILL_CHANNEL: Self = Self(rig::index_of(&OWN, "RC_KILL_CH"));
+    pub const KILL_CHANNEL: Self = Self::named("RC_KILL_CH");
     /// `RC_BTN_HOLD`: the joystick's button for hold.
-    pub const HOLD_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_HOLD"));
+    pub const HOLD_BUTTON: Self = Self::named("RC_BTN_HOLD");
     /// `RC_BTN_FOLLOW`: for follow.
-    pub const FOLLOW_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_FOLLOW"));
+    pub const FOLLOW_BUTTON: Self = Self::named("RC_BTN_FOLLOW");
     /// `RC_BTN_LAND`: for land.
-    pub const LAND_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_LAND"));
+    pub const LAND_BUTTON: Self = Self::named("RC_BTN_LAND");
     /// `RC_BTN_KILL`: that stops the rotors.
-    pub const KILL_BUTTON: Self = Self(rig::index_of(&OWN, "RC_BTN_KILL"));
+    pub const KILL_BUTTON: Self = Self::named("RC_BTN_KILL");
     /// `MIS_SPEED`: a mission's speed where no item says one, m/s.
-    pub const MISSION_SPEED: Self = Self(rig::index_of(&OWN, "MIS_SPEED"));
+    pub const MISSION_SPEED: Self = Self::named("MIS_SPEED");
     /// `MIS_CORNER`: likewise its corners, m.
-    pub const MISSION_CORNER: Self = Self(rig::index_of(&OWN, "MIS_CORNER"));
+    pub const MISSION_CORNER: Self = Self::named("MIS_CORNER");
     /// `MIS_ACC`: the bound of the load's acceleration, m/s².
-    pub const MISSION_ACCELERATION: Self = Self(rig::index_of(&OWN, "MIS_ACC"));
+    pub const MISSION_ACCELERATION: Self = Self::named("MIS_ACC");
 }
 
 impl Setting {
+    /// The one of this name; for the compiler.
+    pub(crate) const fn named(name: &str) -> Self {
+        Self(rig::index_of(&OWN, name))
+    }
+
     /// Its place among all parameters.
     #[must_use]
     pub const fn index(self) -> usize {

@@ -34,4 +34,4 @@ pub use parameters::Parameters;
 pub use profile::{AnyPath, AnySpeed, AnyYaw, NoTable, path};
 pub use rig::{LawNumbers, Output, Rig, Telemetry};
 pub use setpoint::RateSetpoint;
-pub use table::{COUNT, Parameter, Run, Tabled, index_of, narrowed};
+pub use table::{COUNT, Parameter, Run, Tabled, concatenated, index_of, narrowed};

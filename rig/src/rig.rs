@@ -254,6 +254,12 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         either!(&self.law, supervisor => supervisor.sampler().actuation())
     }
 
+    /// What the rotors give up to the last step's end, by the model of latency and lag.
+    #[must_use]
+    pub fn applied(&self) -> &Command<T> {
+        either!(&self.law, supervisor => supervisor.sampler().applied())
+    }
+
     /// ζ when the next command begins to act.
     #[must_use]
     pub fn zeta(&self) -> &[T; 4] {

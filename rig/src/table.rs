@@ -31,8 +31,12 @@ pub const COUNT: usize = {
 static WIDE: [Entry<f64>; COUNT] = concatenated(GROUPS);
 static NARROW: [Entry<f32>; COUNT] = narrowed(&WIDE);
 
-/// The entries of `groups`, one behind the other.
-pub(crate) const fn concatenated<const N: usize>(groups: &[&[Entry<f64>]]) -> [Entry<f64>; N] {
+/// The entries of `groups`, one behind the other; N is how many there are.
+///
+/// # Panics
+/// There are more or fewer.
+#[must_use]
+pub const fn concatenated<const N: usize>(groups: &[&[Entry<f64>]]) -> [Entry<f64>; N] {
     let mut all = [groups[0][0]; N];
     let (mut group, mut next) = (0, 0);
     while group < groups.len() {

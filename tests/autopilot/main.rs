@@ -3,6 +3,7 @@
 
 mod bytes;
 mod control;
+mod estimate;
 mod failsafe;
 mod ground;
 mod link;

@@ -72,6 +72,7 @@ impl Autopilot {
             if let Some(loss) = Loss::ALL.into_iter().find(|loss| self.failsafe.is_lost(*loss, &self.settings)) {
                 return Err(ArmRefused::Lost(loss));
             }
+            self.make_estimator().map_err(|error| ArmRefused::Setup(error.into()))?;
             if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
                 return Err(ArmRefused::NoState);
             }
@@ -80,6 +81,10 @@ impl Autopilot {
             let apart_s = self.apart_s[0].min(self.apart_s[1]);
             if self.drive() == Drive::Flight && apart_s > most {
                 return Err(ArmRefused::Slow(apart_s, most));
+            }
+            let stands = self.request == Request::Idle;
+            if let Some(estimator) = &mut self.estimator {
+                estimator.restart(&self.settings, stands).map_err(|error| ArmRefused::Setup(error.into()))?;
             }
             let rig = self.make_rig()?;
             let share = rig.actuators().largest_thrust() / rig.vehicle().hover_thrust();

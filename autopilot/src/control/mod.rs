@@ -30,6 +30,7 @@ use link::dialect::{LOAD_COUNTERS_DATA, LOAD_STATE_DATA, MavLandedState};
 use rig::{Output, Rig, parameter};
 
 use crate::epoch::Epoch;
+use crate::estimate::Estimator;
 use crate::failsafe::{Failsafe, Loss};
 use crate::mission::{Flown, Memory, Mission};
 use crate::seen::Navigation;
@@ -49,6 +50,8 @@ pub struct Autopilot {
     /// Newest state that has come in flight and was not used yet.
     inbox: Option<LOAD_STATE_DATA>,
     navigation: Navigation,
+    /// While `EST_LOAD` is on; forgotten with each change of a parameter.
+    estimator: Option<Estimator>,
     /// The UAV's own navigation was there at the last control period.
     navigates: bool,
     /// The vehicle is known to stand on the ground.
@@ -98,6 +101,7 @@ impl Autopilot {
             request: Request::Idle,
             inbox: None,
             navigation: Navigation::new(),
+            estimator: None,
             navigates: false,
             stands: false,
             epoch: Epoch::default(),
@@ -133,7 +137,11 @@ impl Autopilot {
 
     /// The parameters, to be changed; `None` when armed.
     pub fn settings_mut(&mut self) -> Option<&mut Settings> {
-        if self.is_armed() { None } else { Some(&mut self.settings) }
+        if self.is_armed() {
+            return None;
+        }
+        self.estimator = None;
+        Some(&mut self.settings)
     }
 
     /// What drives the control step.

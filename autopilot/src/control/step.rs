@@ -1,10 +1,12 @@
 //! A control period: from the states that have come to the command.
 
-use controller::{Command, Mode, Request, State};
+use controller::{Command, Fault, Mode, Request, State};
+use estimator::OutOfRange;
 use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, LoadSeen};
 use rig::{Output, Rig, parameter};
 
 use super::{Absence, Answer, Autopilot, Drive, Notice};
+use crate::estimate::{Estimator, Found, Unseen};
 use crate::mission::Flown;
 use crate::report;
 use crate::seen::Seen;
@@ -40,7 +42,7 @@ impl Autopilot {
     pub fn tick(&mut self) -> Answer {
         let frame = self.inbox.take();
         let period_s = self.period_s();
-        self.navigation.pass(period_s);
+        self.pass();
         for (loss, wanted) in self.failsafe.advance(period_s, &self.settings).into_iter().flatten() {
             self.lose(loss, wanted);
         }
@@ -61,6 +63,9 @@ impl Autopilot {
         } else if self.is_armed() && frame.action == LoadAction::LOAD_ACTION_CONTINUE {
             // Armed and never started: after a reset, say, that the sender has not noticed.
             return self.out_of_step(frame);
+        }
+        if self.estimator.is_some() {
+            self.pass();
         }
         let answer = self.control(Some(frame));
         self.last = Some(answer.clone());
@@ -101,15 +106,14 @@ impl Autopilot {
             Some(_) => Seen::bad(),
             None => Seen::default(),
         };
-        // In lockstep the same frames have the same answers, whatever comes between them.
-        let seen = if self.drive() == Drive::Lockstep { seen } else { seen.or(&self.navigation) };
+        let (seen, unseen) = self.see(seen);
         let good = seen.good();
         self.navigates = seen.uav().is_some();
         let refused = self.refused.take();
         self.absence = match good {
             Some(_) => None,
             None if seen.is_bad => Some(Absence::Bad),
-            None => refused.or(Some(Absence::Missing)),
+            None => refused.or(unseen.map(Absence::Unseen)).or(Some(Absence::Missing)),
         };
         let period_s = self.period_s();
         if good.is_some() {
@@ -130,11 +134,13 @@ impl Autopilot {
             }
         }
         faults.set(LoadFault::LOAD_FAULT_STALE_STATE, refused.is_some());
-        if let (Some(frame), Some(state)) = (frame, good) {
-            if frame.action == LoadAction::LOAD_ACTION_START {
+        if let Some(state) = good {
+            let (action, zeta) =
+                frame.map_or((LoadAction::LOAD_ACTION_CONTINUE, [0.0; 4]), |frame| (frame.action, frame.zeta));
+            if action == LoadAction::LOAD_ACTION_START {
                 self.request = Request::Follow;
             }
-            begin(rig, frame, state, self.request);
+            begin(rig, action, zeta, state, self.request);
         }
         let integral = rig.integral();
         let before = rig.mode();
@@ -145,10 +151,17 @@ impl Autopilot {
             measured.uav = None;
         }
         let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
-        let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen));
+        let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen | Absence::Unseen(_)));
+        // To an estimator the load is out of sight whenever it stands, and back in sight when it hangs.
+        let is_nothing_wrong = fault == Some(Fault::NoState)
+            && match self.absence {
+                Some(Absence::Unseen(Unseen::Rod(_))) => !matches!(mode, Mode::Join | Mode::Follow | Mode::Hold),
+                Some(_) => false,
+                None => self.estimator.is_some(),
+            };
         let is_in_flight = !matches!(mode, Mode::Off | Mode::Idle | Mode::Fault);
         if !(is_away && is_in_flight && self.since_state_s <= self.settings.rig().get(parameter!("POL_COAST"))) {
-            self.fault = fault;
+            self.fault = fault.filter(|_| !is_nothing_wrong);
         }
         let has_fallen_back = is_flying(before) && self.request == Request::Follow && !is_flying(mode);
         self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
@@ -170,10 +183,11 @@ impl Autopilot {
         if self.drive() == Drive::Flight {
             answer.outputs = rotor;
         }
-        if let (Some(frame), Some(state)) = (frame, good)
-            && (self.is_telemetry_s_turn() || frame.telemetry != 0)
+        if let Some(state) = good
+            && (self.is_telemetry_s_turn() || frame.is_some_and(|frame| frame.telemetry != 0))
         {
-            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(frame.sequence, rig, state, integral));
+            let sequence = answer.command.sequence;
+            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(sequence, rig, state, integral));
         }
         self.end_mission(mode);
         let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
@@ -185,9 +199,47 @@ impl Autopilot {
         answer
     }
 
+    /// The UAV moves on, and the estimator is there if it is to be.
+    fn pass(&mut self) {
+        let gravity = self.settings.rig().get(parameter!("VEH_G"));
+        self.navigation.pass(self.period_s(), gravity);
+        // One that can't be made is none, and arming says why.
+        let _ = self.make_estimator();
+    }
+
+    /// Makes the estimator that the parameters describe.
+    pub(super) fn make_estimator(&mut self) -> Result<(), OutOfRange<f32>> {
+        if self.estimator.is_none() {
+            self.estimator = Estimator::new(&self.settings)?;
+        }
+        Ok(())
+    }
+
+    /// What is seen by a frame, with what else is known of the UAV and, by an estimator, of the load;
+    /// and why that is not known. In lockstep without an estimator the same frames have the same
+    /// answers, whatever comes between them.
+    fn see(&mut self, seen: Seen) -> (Seen, Option<Unseen>) {
+        let thrust = self.rig.as_ref().map(|rig| rig.applied().thrust);
+        // Whether it stands or flies, the first state says, though nothing is known of the rod.
+        let begins = self.mode() == Mode::Off;
+        let is_lockstep = self.drive() == Drive::Lockstep;
+        match &mut self.estimator {
+            Some(estimator) => match estimator.step(&self.settings, &mut self.navigation, thrust) {
+                Ok(Found { state, uav, specific_force, unseen }) => {
+                    let state = (begins || unseen.is_none()).then_some(state);
+                    (seen.or_found(state, &uav, &specific_force), unseen)
+                }
+                Err(unseen) => (seen.or(&self.navigation), Some(unseen)),
+            },
+            None if is_lockstep => (seen, None),
+            None => (seen.or(&self.navigation), None),
+        }
+    }
+
     /// Stops the rotors where they have turned for too long without a state, or in fault.
     fn end_blindness(&mut self, mode: Mode, period_s: f32) {
-        let is_blind = mode == Mode::Fault || mode == Mode::Idle && self.absence.is_some();
+        let is_lost = self.absence.is_some_and(|absence| !matches!(absence, Absence::Unseen(Unseen::Rod(_))));
+        let is_blind = mode == Mode::Fault || mode == Mode::Idle && is_lost;
         self.blind_s = if is_blind { self.blind_s + period_s } else { 0.0 };
         if self.blind_s > self.settings.get(Setting::BLIND_TIMEOUT) {
             self.disarm();
@@ -205,13 +257,13 @@ impl Autopilot {
 }
 
 /// What a good state does to the controller's memory before the step on it.
-fn begin(rig: &mut Rig<f32, Flown>, frame: &LOAD_STATE_DATA, state: &State<f32>, request: Request) {
+fn begin(rig: &mut Rig<f32, Flown>, action: LoadAction, zeta: [f32; 4], state: &State<f32>, request: Request) {
     let is_off = rig.mode() == Mode::Off;
     let hover = Command::of_thrust(rig.vehicle().hover_thrust());
     let applied = if is_off { hover } else { rig.output().command };
     // A good state and finite numbers are not refused; if they were, the law would be as it was.
-    let begun = match frame.action {
-        LoadAction::LOAD_ACTION_START => rig.start(state, frame.zeta),
+    let begun = match action {
+        LoadAction::LOAD_ACTION_START => rig.start(state, zeta),
         LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
         LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
         LoadAction::LOAD_ACTION_CONTINUE | LoadAction::LOAD_ACTION_STAND => Ok(()),

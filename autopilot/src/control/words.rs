@@ -2,6 +2,7 @@
 
 use link::dialect::{LOAD_COMMAND_DATA, LOAD_TELEMETRY_DATA};
 
+use crate::estimate::Unseen;
 use crate::failsafe::Loss;
 
 /// What drives the control step, and whether the rotors do as they are told.
@@ -69,6 +70,8 @@ pub enum Absence {
     Frozen,
     /// It was no state.
     Bad,
+    /// None came, and the estimator does not know it.
+    Unseen(Unseen),
 }
 
 /// The outcome of one control step.

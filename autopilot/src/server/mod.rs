@@ -237,7 +237,10 @@ impl Server {
             }
             MavMessage::LOCAL_POSITION_NED(place) => autopilot.navigation_mut().hear_place(&place),
             MavMessage::ATTITUDE_QUATERNION(attitude) => autopilot.navigation_mut().hear_attitude(&attitude),
+            MavMessage::ODOMETRY(odometry) => autopilot.navigation_mut().hear_odometry(&odometry),
             MavMessage::HIGHRES_IMU(imu) => autopilot.navigation_mut().hear_imu(&imu),
+            MavMessage::GPS_INPUT(fix) => autopilot.navigation_mut().instruments_mut().hear_gps_input(&fix),
+            MavMessage::GPS_RAW_INT(fix) => autopilot.navigation_mut().instruments_mut().hear_gps_raw(&fix),
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
             MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
                 autopilot.hear_battery(battery.battery_remaining);
