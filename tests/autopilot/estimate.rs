@@ -316,7 +316,7 @@ fn without_what_it_needs_it_does_not_arm() {
 fn a_state_of_the_load_that_is_sent_goes_first() {
     let mut field = Field::new(scenario(""), 1.0, 6);
     field.pass(1.0, &mut |_| {});
-    let mut autopilot = field.station.autopilot.clone();
+    let autopilot = &mut field.station.autopilot;
     autopilot.request(Request::Hold);
     autopilot.arm().unwrap();
     autopilot.receive(&crate::station::frame(1));
