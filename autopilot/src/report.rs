@@ -53,6 +53,7 @@ pub fn fault(fault: Fault) -> LoadFault {
         Fault::NoPath => LoadFault::LOAD_FAULT_NO_PATH,
         Fault::Slack => LoadFault::LOAD_FAULT_TENSION,
         Fault::PayloadLost => LoadFault::LOAD_FAULT_PAYLOAD_LOST,
+        Fault::Contradiction => LoadFault::LOAD_FAULT_BAD_STATE,
         _ => LoadFault::empty(),
     }
 }
@@ -89,8 +90,9 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::Margin(margin)), _) => margin_text(margin),
         (Some(Fault::NotFinite), _) => "law's answer not finite",
         (Some(Fault::NoPath), _) => "no point of the path found",
-        (Some(Fault::Slack), _) => "cable slack, or shorter than VEH_ROD",
+        (Some(Fault::Slack), _) => "cable slack, or below VEH_ROD",
         (Some(Fault::PayloadLost), _) => "payload lost",
+        (Some(Fault::Contradiction), _) => "load measured out of reach",
         (Some(_), _) => "another fault",
         (None, _) => "",
     };

@@ -316,6 +316,42 @@ fn a_load_that_is_not_seen_for_two_seconds_costs_no_height() {
     assert_eq!(flight.supervisor.mode(), Mode::Follow);
 }
 
+/// For two seconds of following the load is measured elsewhere: at the origin, or where it was. The
+/// UAV knows better, since no cable reaches that far, and holds.
+#[test]
+fn a_load_that_is_measured_wrong_for_two_seconds_costs_no_height() {
+    type Wrong = fn(&State<f32>, &State<f32>) -> State<f32>;
+    let at_the_origin: Wrong = |now, _| State { position: Vector3::zeros(), velocity: Vector3::zeros(), ..*now };
+    let where_it_was: Wrong = |now, then| State { position: then.position, velocity: then.velocity, ..*now };
+    for (name, wrong) in [("at the origin", at_the_origin), ("where it was", where_it_was)] {
+        let mut flight = hanging(PAPER, 10.0);
+        for _ in 0..5000 {
+            flight.step(Request::Follow);
+        }
+        assert_eq!(flight.supervisor.mode(), Mode::Follow);
+        let (then, height) = (flight.state(), flight.world.uav.position.z);
+        let mut lost = 0.0_f64;
+        let mut last = None;
+        for step in 0..16_000 {
+            let (uav, state) = (flight.uav(), flight.state());
+            let state = if step < 1000 { wrong(&state, &then) } else { state };
+            let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: None };
+            let output = flight.supervisor.step(measured, Request::Follow);
+            flight.world.advance(&output.command);
+            if step < 1500 {
+                lost = lost.max(flight.world.uav.position.z - height);
+            }
+            if step == 999 {
+                assert_eq!((output.mode, output.fault), (Mode::Hold, Some(Fault::Contradiction)), "{name}");
+            }
+            last = Some(output.mode);
+        }
+        println!("{name}: {lost:.2} m lost");
+        assert!(lost < 1.0, "{name}: {lost} m lost");
+        assert_eq!(last, Some(Mode::Follow), "{name}");
+    }
+}
+
 /// A cable that is told too long seems slack: it holds, and says why. Told a little too short or too
 /// long it flies.
 #[test]

@@ -10,6 +10,11 @@ use crate::sampled::pull::Pull;
 pub(crate) const SHORTENED: f64 = 0.9;
 const UNWEIGHTED: f64 = 0.5;
 const SLACKENING: f64 = 0.1;
+/// A load that is measured further from where rod and cable can have it than this share of its
+/// length, and than so many m, for as long as [`SLACKENING`]: one of the measurements is wrong. A
+/// cable that is told a quarter too short is not meant.
+const APART: f64 = 0.3;
+const APART_AT_LEAST: f64 = 0.3;
 /// Time, s, over which the usual pull is averaged.
 const USUAL: f64 = 2.0;
 /// Largest specific force, m/s², that an accelerometer is believed.
@@ -36,13 +41,22 @@ pub(crate) struct Cable<T> {
     learning: T,
     /// For how long the cable has seemed slack, s.
     slackening: T,
+    /// For how long load and UAV have contradicted each other, s.
+    apart: T,
 }
 
 impl<T: Real> Cable<T> {
     /// Pulling as the load's weight, observed with no more than the bandwidth `most`, rad/s.
     pub(crate) fn new(vehicle: &Vehicle<T>, period: T, most: T) -> Self {
         let weight = vehicle.params().payload_mass * vehicle.params().gravity;
-        Self { period, pull: Pull::new(period, most), usual: weight, learning: T::zero(), slackening: T::zero() }
+        Self {
+            period,
+            pull: Pull::new(period, most),
+            usual: weight,
+            learning: T::zero(),
+            slackening: T::zero(),
+            apart: T::zero(),
+        }
     }
 
     /// Taut at `state` under `thrust`, N.
@@ -101,6 +115,16 @@ impl<T: Real> Cable<T> {
         }
         self.slackening = T::zero();
         self.average(vehicle, watching);
+    }
+
+    /// Whether the `line` from the UAV to the load, m, can't be a cable along `rod`, be it slack.
+    #[inline(never)]
+    pub(crate) fn is_contradicted(&mut self, vehicle: &Vehicle<T>, line: &Vector3<T>, rod: &Vector3<T>) -> bool {
+        let length = vehicle.params().rod_length;
+        let off = line - rod * line.dot(rod).clamp(T::zero(), length);
+        let most = (length * T::lit(APART)).max(T::lit(APART_AT_LEAST));
+        self.apart = if is_within(&off, most * most) { T::zero() } else { self.apart + self.period };
+        self.apart > T::lit(SLACKENING)
     }
 
     /// Averages the usual pull.

@@ -66,6 +66,8 @@ pub enum Fault {
     Slack,
     /// The payload is gone.
     PayloadLost,
+    /// Load, rod and UAV are measured where no cable of this length could have them together.
+    Contradiction,
 }
 
 /// What to do without a state.

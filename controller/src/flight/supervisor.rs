@@ -52,7 +52,8 @@ const CALM_TILT: f64 = 0.95;
 ///
 /// What a request, the flight and the state's absence lead to, from each mode. The tests read this
 /// table and try every field. *Load unseen* is a state missing for longer than [`Policy::coast`]
-/// while the UAV's own navigation is there, *no state* the absence of both:
+/// while the UAV's own navigation is there, or one that contradicts it; *no state* the absence of
+/// both:
 ///
 /// | mode    | `Off` | `Idle` | `Follow` | `Hold`  | `Land` | risen | path reached | margin beyond | payload lost | cable slack | landed | load unseen | no state | none for long |
 /// |---------|-------|--------|----------|---------|--------|-------|--------------|---------------|--------------|-------------|--------|-------------|----------|---------------|
@@ -242,6 +243,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             None => Fault::NoState,
             Some(state) => match state.check() {
                 Err(channel) => Fault::State(channel),
+                Ok(()) if self.is_contradicted(state, uav) => {
+                    // Nor was the last state one to carry on.
+                    self.blind = self.blind.max(self.policy.coast);
+                    Fault::Contradiction
+                }
                 Ok(()) => return self.with_load(state, uav, measured.specific_force),
             },
         };
@@ -254,6 +260,15 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             Some(uav) => self.without_load(uav, measured.specific_force),
             None => self.without_state(),
         }
+    }
+
+    /// Whether the load is measured in flight where it can't hang from the UAV.
+    fn is_contradicted(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> bool {
+        let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle);
+        uav.is_some_and(|uav| {
+            let line = state.position - uav.position;
+            is_flying && self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod)
+        })
     }
 
     /// Whether the model can say what has become of the last state: not for long, and only with a
