@@ -114,7 +114,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let a = &self.0;
         let mut c = [T::zero(); N];
         for k in 0..N {
-            let mut half = T::zero();
+            let mut half = T::EMPTY_SUM;
             for j in 0..k.div_ceil(2) {
                 half += a[j] * a[k - j];
             }
@@ -132,7 +132,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut y = [T::zero(); N];
         y[0] = inverse;
         for k in 1..N {
-            let mut sum = T::zero();
+            let mut sum = T::EMPTY_SUM;
             for j in 1..k + 1 {
                 sum += self.0[j] * y[k - j];
             }
@@ -148,7 +148,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         y[0] = self.0[0].sqrt();
         let per_twice = T::one() / (y[0] + y[0]);
         for k in 1..N {
-            let mut half = T::zero();
+            let mut half = T::EMPTY_SUM;
             for j in 1..k.div_ceil(2) {
                 half += y[j] * y[k - j];
             }
@@ -169,7 +169,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut y = [T::zero(); N];
         y[0] = self.0[0].powf(exponent);
         for k in 1..N {
-            let mut sum = T::zero();
+            let mut sum = T::EMPTY_SUM;
             for j in 1..k + 1 {
                 sum += (exponent * weighted[j] - self.0[j] * T::WHOLE[k - j]) * y[k - j];
             }
@@ -185,7 +185,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut y = [T::zero(); N];
         y[0] = self.0[0].exp();
         for k in 1..N {
-            let mut sum = T::zero();
+            let mut sum = T::EMPTY_SUM;
             for j in 1..k + 1 {
                 sum += weighted[j] * y[k - j];
             }
@@ -220,7 +220,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut cos = [T::zero(); N];
         (sin[0], cos[0]) = self.0[0].sin_cos();
         for k in 1..N {
-            let (mut sin_sum, mut cos_sum) = (T::zero(), T::zero());
+            let (mut sin_sum, mut cos_sum) = (T::EMPTY_SUM, T::EMPTY_SUM);
             for j in 1..k + 1 {
                 sin_sum += weighted[j] * cos[k - j];
                 cos_sum += weighted[j] * sin[k - j];
@@ -242,7 +242,7 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         let mut weighted = [T::zero(); N];
         theta[0] = self.0[0].atan2(x.0[0]);
         for k in 1..N {
-            let mut sum = T::zero();
+            let mut sum = T::EMPTY_SUM;
             for j in 1..k + 1 {
                 sum += x.0[k - j] * dy[j] - self.0[k - j] * dx[j];
             }
@@ -264,12 +264,12 @@ impl<T: Real, const N: usize> Analytic<T> for Series<T, N> {
         y[0] = self.0[0].tanh();
         slope[0] = T::one() - y[0] * y[0];
         for k in 1..N {
-            let mut sum = T::zero();
+            let mut sum = T::EMPTY_SUM;
             for j in 1..k + 1 {
                 sum += weighted[j] * slope[k - j];
             }
             y[k] = sum * T::RECIPROCAL[k];
-            let mut square = T::zero();
+            let mut square = T::EMPTY_SUM;
             for j in 0..k + 1 {
                 square += y[j] * y[k - j];
             }

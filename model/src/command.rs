@@ -46,6 +46,11 @@ impl<T: Real> Command<T> {
         Self { thrust: self.thrust - other.thrust, torque: self.torque - other.torque }
     }
 
+    /// Every component is less than `size`, N and N·m, either way.
+    pub fn is_below(&self, size: T) -> bool {
+        [self.thrust, self.torque.x, self.torque.y, self.torque.z].iter().all(|component| component.abs() < size)
+    }
+
     /// No infinity, no NaN.
     #[inline]
     pub fn is_finite(&self) -> bool {

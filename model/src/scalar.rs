@@ -15,6 +15,9 @@ pub(crate) mod sealed {
     /// Closes [`Real`](super::Real), and holds the whole numbers that series arithmetic needs: from
     /// a table, since an index turned into a number at run time would take double precision.
     pub trait Sealed: Sized {
+        /// What a sum begins with: −0, which added to any number is that number, so that the
+        /// addition is left out. 0 is not, since 0 + −0 = 0.
+        const EMPTY_SUM: Self;
         /// 0 to 7.
         const WHOLE: [Self; 8];
         /// 1/k for k up to 7; 0 for 0.
@@ -33,6 +36,7 @@ pub(crate) mod sealed {
     macro_rules! tables {
         ($real:ty) => {
             impl Sealed for $real {
+                const EMPTY_SUM: Self = -0.0;
                 const WHOLE: [Self; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
                 const RECIPROCAL: [Self; 8] = [0.0, 1.0, 0.5, 1.0 / 3.0, 0.25, 0.2, 1.0 / 6.0, 1.0 / 7.0];
                 const FACTORIAL: [Self; 8] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0];

@@ -17,8 +17,6 @@ const APART: f64 = 0.3;
 const APART_AT_LEAST: f64 = 0.3;
 /// Time, s, over which the usual pull is averaged.
 const USUAL: f64 = 2.0;
-/// Largest specific force, m/s², that an accelerometer is believed.
-const MOST_SPECIFIC: f64 = 200.0;
 
 /// What the flight says of the cable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,12 +88,9 @@ impl<T: Real> Cable<T> {
         thrust: T,
         specific: Option<Vector3<T>>,
     ) {
-        let b3: Vector3<T> = attitude.column(2).into();
         match specific {
-            Some(specific) if is_within(&specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC)) => {
-                self.pull.sample_specific(vehicle, velocity, &b3, thrust, &(attitude * specific));
-            }
-            _ => self.pull.sample(vehicle, velocity, &b3, thrust),
+            Some(specific) => self.pull.sample_specific(vehicle, velocity, attitude, thrust, &specific),
+            None => self.pull.sample(vehicle, velocity, attitude, thrust),
         }
     }
 

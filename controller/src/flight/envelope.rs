@@ -149,7 +149,7 @@ impl<T: Real> Envelope<T> {
 
     /// How `margins` stand by the least of them, with the determinant of the path's system as a
     /// share of `path_det`, its value on the path.
-    #[inline(never)]
+    #[inline]
     pub fn assess(&self, margins: &Margins<T>, path_det: T) -> Standing {
         let (mut least, mut margin) = (T::one(), Margin::RodAngle);
         let values = margins.values(path_det);

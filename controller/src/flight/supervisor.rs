@@ -13,7 +13,7 @@ use crate::law::approach::{ApproachLimits, Pace};
 use crate::law::hold::{Hold, Swing};
 use crate::law::margins::{Margin, Margins};
 use crate::law::solution::Solution;
-use crate::law::{Ahead, Law};
+use crate::law::Law;
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
@@ -360,13 +360,13 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     fn fly(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
         let is_slack = self.cable.is_slack() || self.landing.is_set_down() || self.mode == Mode::TakeOff;
         let known = is_slack.then(|| self.sampler.freeze(state));
-        let ahead = self.sampler.sample(state);
+        self.sampler.sample(state);
         if let Some(known) = known {
             self.sampler.keep(known);
             return self.fly_slack(state, uav);
         }
         if matches!(self.mode, Mode::Join | Mode::Follow) {
-            self.follow(state, uav, &ahead)
+            self.follow(state, uav)
         } else {
             self.hold_at(state, uav)
         }
@@ -426,7 +426,15 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     }
 
     /// The edges that requests and good states open: the table's rows.
+    #[inline]
     fn change_mode(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) {
+        if (self.mode, self.request) != (Mode::Follow, Request::Follow) {
+            self.look_for_edge(state, uav);
+        }
+    }
+
+    #[inline(never)]
+    fn look_for_edge(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) {
         let to = match (self.mode, self.request) {
             (Mode::Off, Request::Off | Request::Land) => Mode::Off,
             (Mode::Off, _) => Mode::Idle,
@@ -523,8 +531,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// The law's command for when it acts, if its answer can be flown; hold's, if not.
     // Apart, and so is hold: neither needs the other's stack.
     #[inline(never)]
-    fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>, ahead: &Ahead<T>) -> Output<T> {
-        self.sampler.ask(&mut self.law, ahead);
+    fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
+        self.sampler.ask(&mut self.law);
         let solution = self.law.solution();
         let standing = self.envelope.assess(&solution.margins, self.law.approach().path_det());
         let fault = if let Standing::Beyond(margin) = standing {
@@ -583,7 +591,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             None | Some(Standing::Inside) => None,
             Some(Standing::Warning(margin) | Standing::Beyond(margin)) => Some(margin),
         };
-        let command = self.sampler.commit(wanted, T::zero(), T::zero());
+        let command = self.sampler.commit(&wanted, T::zero(), T::zero());
         self.output(command, warning)
     }
 

@@ -162,6 +162,7 @@ pub struct Approach<T> {
     /// T_b and T, s.
     braking: T,
     sliding: T,
+    is_active: bool,
 }
 
 impl<T: Real> Approach<T> {
@@ -178,6 +179,7 @@ impl<T: Real> Approach<T> {
             elapsed: zero,
             braking: zero,
             sliding: zero,
+            is_active: false,
         }
     }
 
@@ -217,17 +219,16 @@ impl<T: Real> Approach<T> {
         let braking = duration(&pace.brake, &velocity);
         let displacement = displacement + velocity * (braking * T::lit(0.5));
         let sliding = duration(&pace.slide, &displacement);
-        Self { displacement, velocity, yaw, braking, sliding, ..Self::none() }
+        Self { displacement, velocity, yaw, braking, sliding, is_active: true, ..Self::none() }
     }
 
-    #[inline]
     fn duration(&self) -> T {
         self.braking + self.sliding
     }
 
     /// Whether the path is still displaced.
     pub fn is_active(&self) -> bool {
-        self.elapsed < self.duration()
+        self.is_active
     }
 
     /// The determinant (∇h1 × ∇h2)·ρ of the path's 3×3 system at the point that was joined; 1 if
@@ -244,8 +245,9 @@ impl<T: Real> Approach<T> {
     /// One control period on.
     #[inline]
     pub(crate) fn advance(&mut self, period: T) {
-        if self.is_active() {
+        if self.is_active {
             self.elapsed += period;
+            self.is_active = self.elapsed < self.duration();
         }
     }
 
@@ -253,13 +255,15 @@ impl<T: Real> Approach<T> {
     /// returns what [`fade`](Self::fade) needs.
     #[inline(always)]
     pub(crate) fn leave(&self, ahead: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
-        let elapsed = self.elapsed + ahead;
-        (elapsed < self.duration()).then(|| self.slide(elapsed, position))
+        if self.is_active { self.slide(self.elapsed + ahead, position) } else { None }
     }
 
     // Out of line: a step on the path does not need it.
     #[inline(never)]
-    fn slide(&self, elapsed: T, position: &mut PositionSeries<T>) -> Fading<T> {
+    fn slide(&self, elapsed: T, position: &mut PositionSeries<T>) -> Option<Fading<T>> {
+        if elapsed >= self.duration() {
+            return None;
+        }
         let is_braking = elapsed < self.braking;
         let (since, duration) =
             if is_braking { (elapsed, self.braking) } else { (elapsed - self.braking, self.sliding) };
@@ -271,7 +275,7 @@ impl<T: Real> Approach<T> {
             s = Series::constant(T::one());
         }
         displace(position, &s, &self.displacement);
-        Fading(s)
+        Some(Fading(s))
     }
 
     /// Brings speed and yaw to where they are while the displacement is.

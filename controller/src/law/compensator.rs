@@ -6,7 +6,7 @@
 use model::{Disturbance, Real, State, Vehicle, dynamics::lambda};
 
 /// The integrator chain over `dt` with u_ζ held, exact (11.4).
-#[inline(never)]
+#[inline]
 pub fn propagate<T: Real>(zeta: &[T; 4], u_zeta: T, dt: T) -> [T; 4] {
     let half = dt * T::lit(1.0 / 2.0);
     let third = dt * T::lit(1.0 / 3.0);

@@ -39,5 +39,5 @@ impl<T: Real, X> Solution<T, X> {
 /// Σ aₖ bₖ.
 #[inline]
 pub(crate) fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
-    a.iter().zip(b).fold(T::zero(), |sum, (&a, &b)| sum + a * b)
+    a.iter().zip(b).fold(T::EMPTY_SUM, |sum, (&a, &b)| sum + a * b)
 }

@@ -111,14 +111,13 @@ pub(crate) struct Actuators<T> {
     line: [Command<T>; SLOTS],
     newest: usize,
     delay: usize,
-    /// e^(−h/τ): what a period leaves of the distance to a command; 0 without lag.
-    decay: T,
-    /// Share of a command's step that acts at once: 1 without lag, 0 with one. A number, so that no
-    /// period branches.
-    at_once: T,
-    /// What acts up to this sample, and by how much that stepped at the last one.
+    /// What acts up to this sample, and by how much that stepped at the last one: nothing with a
+    /// lag.
     applied: Command<T>,
     step: Command<T>,
+    /// What the mean over the law's look ahead has over what will act when the coming command begins
+    /// to: nothing without a lag.
+    drift: Command<T>,
     /// The rest is of a lag.
     lag: Option<Lag<T>>,
 }
@@ -126,6 +125,7 @@ pub(crate) struct Actuators<T> {
 /// A lag and its lead.
 #[derive(Clone, Copy, Debug)]
 struct Lag<T> {
+    /// e^(−h/τ): what a period leaves of the distance to a command.
     decay: T,
     /// Share of a command in the mean over its period.
     mean_share: T,
@@ -135,10 +135,8 @@ struct Lag<T> {
     /// Share of what is wanted in the mean from when the coming command begins to act to when the
     /// law's answer is for.
     share: T,
-    /// What will act when the coming command begins to, and what the mean over the law's look ahead
-    /// has over it.
+    /// What will act when the coming command begins to.
     arriving: Command<T>,
-    drift: Command<T>,
     /// The mean of what acted in the last period.
     mean: Command<T>,
 }
@@ -154,7 +152,6 @@ impl<T: Real> Lag<T> {
             per_lead: led / lag,
             share: if ahead > T::zero() { settled(led, ahead) } else { T::zero() },
             arriving: command,
-            drift: Command::zero(),
             mean: command,
         }
     }
@@ -173,16 +170,14 @@ impl<T: Real> Actuators<T> {
         OutOfRange::within("latency", latency, T::zero(), period * T::lit(MAX_DELAY as f64 + 1e-3))?;
         let periods = latency / period + T::lit(0.5);
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
-        let has_lag = lag > T::zero();
-        let lag = has_lag.then(|| Lag::new(period, lag, led(lag), horizon - latency, command));
+        let lag = (lag > T::zero()).then(|| Lag::new(period, lag, led(lag), horizon - latency, command));
         Ok(Self {
             line: [command; SLOTS],
             newest: 0,
             delay,
-            decay: lag.map_or(T::zero(), |lag| lag.decay),
-            at_once: if has_lag { T::zero() } else { T::one() },
             applied: command,
             step: Command::zero(),
+            drift: Command::zero(),
             lag,
         })
     }
@@ -191,9 +186,9 @@ impl<T: Real> Actuators<T> {
     pub(crate) fn reset(&mut self, command: Command<T>) {
         self.line = [command; SLOTS];
         self.applied = command;
-        self.step = Command::zero();
+        (self.step, self.drift) = (Command::zero(), Command::zero());
         if let Some(lag) = &mut self.lag {
-            (lag.arriving, lag.drift, lag.mean) = (command, Command::zero(), command);
+            (lag.arriving, lag.mean) = (command, command);
         }
     }
 
@@ -224,8 +219,8 @@ impl<T: Real> Actuators<T> {
     /// What the mean from then to when the law's answer is for has over [`arriving`](Self::arriving),
     /// as far as it is known before the coming command: nothing without a lag.
     #[inline]
-    pub(crate) fn drift(&self) -> Command<T> {
-        self.lag.as_ref().map_or_else(Command::zero, |lag| lag.drift)
+    pub(crate) fn drift(&self) -> &Command<T> {
+        &self.drift
     }
 
     /// The mean of what acted in the last period.
@@ -271,11 +266,10 @@ impl<T: Real> Actuators<T> {
         })
     }
 
-    /// What is to be sent for `wanted` to act (11.9).
+    /// What is to be sent for `wanted` to act (11.9), if that is something else.
     #[inline]
-    pub(crate) fn led(&self, wanted: &Command<T>) -> Command<T> {
-        let lead = |lag: &Lag<T>| lag.arriving.plus(&wanted.minus(&lag.arriving).times(lag.lead));
-        self.lag.as_ref().map_or(*wanted, lead)
+    pub(crate) fn led(&self, wanted: &Command<T>) -> Option<Command<T>> {
+        self.lag.as_ref().map(|lag| lag.arriving.plus(&wanted.minus(&lag.arriving).times(lag.lead)))
     }
 
     /// What will act of a command `sent`: the inverse of [`led`](Self::led).
@@ -287,27 +281,27 @@ impl<T: Real> Actuators<T> {
 
     /// Sends the command for the coming hold.
     #[inline]
-    pub(crate) fn push(&mut self, command: Command<T>) {
+    pub(crate) fn push(&mut self, command: &Command<T>) {
         self.newest = self.newest.wrapping_add(1);
         if let Some(slot) = self.line.get_mut(self.newest % SLOTS) {
-            *slot = command;
+            *slot = *command;
         }
-        let delayed = self.sent(self.delay);
+        let delayed = if self.delay == 0 { *command } else { self.sent(self.delay) };
         if self.lag.is_some() {
-            self.lag_behind(&command, &delayed);
+            self.lag_behind(command, &delayed);
+        } else {
+            self.step = delayed.minus(&self.applied);
+            self.applied = delayed;
         }
-        let step = delayed.minus(&self.applied);
-        self.applied = delayed.minus(&step.times(self.decay));
-        self.step = step.times(self.at_once);
     }
 
-    #[inline(never)]
+    #[cold]
     fn lag_behind(&mut self, command: &Command<T>, delayed: &Command<T>) {
         let wanted = self.unled(command);
         if let Some(lag) = &mut self.lag {
-            (_, lag.mean) = lag.pass(&self.applied, delayed);
+            (self.applied, lag.mean) = lag.pass(&self.applied, delayed);
             (lag.arriving, _) = lag.pass(&lag.arriving, command);
-            lag.drift = wanted.minus(&lag.arriving).times(lag.share);
+            self.drift = wanted.minus(&lag.arriving).times(lag.share);
         }
     }
 }

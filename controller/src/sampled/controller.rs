@@ -165,8 +165,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         if !self.is_started {
             self.first(sampled);
         }
-        let ahead = self.sampler.sample(sampled);
-        self.sampler.ask(&mut self.law, &ahead);
+        self.sampler.sample(sampled);
+        self.sampler.ask(&mut self.law);
         let command = self.sampler.accept(&mut self.law);
         Solution { command, ..*self.law.solution() }
     }

@@ -8,8 +8,8 @@
 //! with T the thrust that is applied, discretized with both poles at e^(−o h); or, where an
 //! accelerometer tells the specific force f_B, f follows R f_B + (T/m_Q) b3 with the bandwidth o.
 
-use model::{Real, Vehicle};
-use nalgebra::Vector3;
+use model::{Real, Vehicle, is_within};
+use nalgebra::{Matrix3, Vector3};
 
 /// o, rad/s: faster than a swing, slower than noise; less where a cable stretches.
 const BANDWIDTH: f64 = 10.0;
@@ -17,6 +17,8 @@ const BANDWIDTH: f64 = 10.0;
 /// is vertical: a cable pulls down, wind sideways, and nothing lifts.
 const STRONGEST: f64 = 3.0;
 const LEVEL: f64 = 0.3;
+/// Largest specific force, m/s², that an accelerometer is believed.
+const MOST_SPECIFIC: f64 = 200.0;
 
 /// The observer of the pull on the UAV.
 #[derive(Clone, Copy, Debug)]
@@ -57,8 +59,9 @@ impl<T: Real> Pull<T> {
     }
 
     /// Ends a period in which `thrust` (N) acted along −`b3`, with the UAV's sampled `velocity`.
-    #[inline]
-    pub(crate) fn sample(&mut self, vehicle: &Vehicle<T>, velocity: &Vector3<T>, b3: &Vector3<T>, thrust: T) {
+    #[inline(never)]
+    pub(crate) fn sample(&mut self, vehicle: &Vehicle<T>, velocity: &Vector3<T>, attitude: &Matrix3<T>, thrust: T) {
+        let b3: Vector3<T> = attitude.column(2).into();
         let params = vehicle.params();
         let mut acceleration = self.force - b3 * (thrust / params.uav_mass);
         acceleration.z += params.gravity;
@@ -68,16 +71,21 @@ impl<T: Real> Pull<T> {
         self.force += error * self.force_gain;
     }
 
-    /// The same where the accelerometer's `specific` force (N, m/s²) is known.
+    /// The same where the accelerometer's `specific` force (body axes, m/s²) is known.
+    #[cold]
     pub(crate) fn sample_specific(
         &mut self,
         vehicle: &Vehicle<T>,
         velocity: &Vector3<T>,
-        b3: &Vector3<T>,
+        attitude: &Matrix3<T>,
         thrust: T,
         specific: &Vector3<T>,
     ) {
-        let pull = specific + b3 * (thrust / vehicle.params().uav_mass);
+        if !is_within(specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC)) {
+            return self.sample(vehicle, velocity, attitude, thrust);
+        }
+        let b3: Vector3<T> = attitude.column(2).into();
+        let pull = attitude * specific + b3 * (thrust / vehicle.params().uav_mass);
         self.force += (pull - self.force) * self.follow_gain;
         self.velocity = *velocity;
     }

@@ -27,6 +27,8 @@ use crate::sampling::Sampling;
 /// Time constant with which thrust and torque pass from what was applied before a take-over to the
 /// law's, s.
 const TAKE_OVER: f64 = 0.05;
+/// What is left of the step when it counts as passed, N and N·m: less than thrust is rounded to.
+const FADED: f64 = 1e-9;
 
 /// What a sampled law remembers, whatever law it is: ζ, the commands on their way, the observers.
 /// It is lent to one law at a time.
@@ -44,21 +46,19 @@ struct Memory<T> {
     weight: Weight<T>,
     period: T,
     half_hold: T,
-    horizon: T,
     /// What of the horizon comes after the commands in flight.
     rest: T,
     /// The last state, sampled or carried.
     last: State<T>,
+    /// Where the coming command acts, as seen from there.
+    ahead: Ahead<T>,
     /// The disturbance at the horizon, where there are commands in flight.
     expected: Option<Disturbance<T>>,
     /// ζ when the coming command begins to act: `horizon` − `half_hold` after the sample. What lies
     /// between needs no prediction, since the compensator is the law's own.
     zeta: [T; 4],
     u_zeta: T,
-    /// The next command's step against what is being applied is to fade.
-    is_softening: bool,
-    /// What is left of such a step.
-    bump: Command<T>,
+    bump: Bump<T>,
     /// What a period leaves of it.
     fade: T,
     /// The last command's thrust was not what the actuators could apply.
@@ -69,12 +69,23 @@ struct Memory<T> {
     observer: Observer<T>,
 }
 
+/// A command's step against what was applied before the law took over, which fades.
+#[derive(Clone, Copy, Debug)]
+enum Bump<T> {
+    None,
+    /// The next command's step is to.
+    Coming,
+    /// What is left.
+    Fading(Command<T>),
+}
+
 impl<T: Real> Sampler<T> {
     /// At hover (ζ = 0), without limits or observers.
     pub(crate) fn new(vehicle: Vehicle<T>, sampling: &Sampling<T>) -> Result<Self, OutOfRange<T>> {
         sampling.check()?;
         let Sampling { period, latency, rotor_lag, .. } = *sampling;
         let horizon = sampling.horizon();
+        let last = State::at_rest(Vector3::zeros());
         let hover = Command::of_thrust(vehicle.hover_thrust());
         let actuators = Actuators::new(period, latency, rotor_lag, horizon, hover)?;
         let memory = Memory {
@@ -83,14 +94,13 @@ impl<T: Real> Sampler<T> {
             weight: Weight::told(),
             period,
             half_hold: sampling.half_hold(),
-            horizon,
             rest: if sampling.look_ahead { horizon - actuators.latency(period) } else { T::zero() },
-            last: State::at_rest(Vector3::zeros()),
+            last,
+            ahead: Ahead { state: last, zeta: [T::zero(); 4], horizon },
             expected: (sampling.look_ahead && actuators.is_late()).then(Disturbance::none),
             zeta: [T::zero(); 4],
             u_zeta: T::zero(),
-            is_softening: false,
-            bump: Command::zero(),
+            bump: Bump::None,
             fade: (-period / T::lit(TAKE_OVER)).exp(),
             is_saturated: false,
             asked: hover,
@@ -127,8 +137,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
 
     /// Asks `law` for its answer where its command acts.
     #[inline(always)]
-    pub(crate) fn ask<L: Law<T>>(&self, law: &mut L, ahead: &Ahead<T>) {
-        let Memory { weighed, observer, expected, .. } = &self.memory;
+    pub(crate) fn ask<L: Law<T>>(&self, law: &mut L) {
+        let Memory { weighed, observer, expected, ahead, .. } = &self.memory;
         law.evaluate(weighed, ahead, expected.as_ref().unwrap_or(observer.estimate()));
     }
 
@@ -137,7 +147,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     pub(crate) fn accept<L: Law<T>>(&mut self, law: &mut L) -> Command<T> {
         let Solution { command, u_zeta, margins, .. } = law.solution();
         self.weigh(margins.lambda);
-        let applied = self.commit(*command, *u_zeta, margins.q3 * margins.q_b3);
+        let applied = self.commit(command, *u_zeta, margins.q3 * margins.q_b3);
         law.accept(self.memory.period, self.memory.is_saturated);
         applied
     }
@@ -180,8 +190,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.reset(state, applied);
         self.memory.zeta = zeta;
         self.memory.u_zeta = T::zero();
-        self.memory.is_softening = false;
-        self.memory.bump = Command::zero();
+        self.memory.bump = Bump::None;
         Ok(())
     }
 
@@ -219,7 +228,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
 
     /// Has the next command's step against what is being applied fade.
     pub(crate) fn soften(&mut self) {
-        self.memory.is_softening = true;
+        self.memory.bump = Bump::Coming;
     }
 
     /// The bandwidth, rad/s, that the cable allows along itself.
@@ -244,7 +253,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[inline(never)]
     pub(crate) fn send(&mut self, command: &Command<T>) -> Command<T> {
         let applied = self.actuation.apply(command);
-        self.memory.actuators.push(applied);
+        self.memory.actuators.push(&applied);
         applied
     }
 
@@ -304,7 +313,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let Memory { period, rest, actuators, .. } = &self.memory;
         let step = |uav: Uav<T>, (time, command): (T, Command<T>)| self.pass_uav(&uav, force, &command, time);
         let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
-        let coming = (*rest, actuators.arriving().plus(&actuators.drift()));
+        let coming = (*rest, actuators.arriving().plus(actuators.drift()));
         in_flight.chain([coming]).fold(*uav, step)
     }
 
@@ -324,48 +333,47 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.
-    #[inline]
-    pub(crate) fn sample(&mut self, sampled: &State<T>) -> Ahead<T> {
-        remember(&mut self.memory.last, sampled);
-        let (dt, observer, actuators) = (self.memory.rest, &mut self.memory.observer, &self.memory.actuators);
-        let (applied, step, drift) = (actuators.applied(), actuators.step(), actuators.drift());
+    #[inline(never)]
+    pub(crate) fn sample(&mut self, sampled: &State<T>) {
+        let Memory { weighed, last, ahead, rest, observer, actuators, zeta, u_zeta, half_hold, .. } =
+            &mut self.memory;
+        remember(last, sampled);
+        let (dt, applied, step, drift) = (*rest, actuators.applied(), actuators.step(), actuators.drift());
         let State { position, velocity, rod, rod_rate, attitude, body_rate } = sampled;
-        let model = Model::at(&self.memory.weighed, sampled);
+        let (model, to) = (Model::at(weighed, sampled), &mut ahead.state);
 
         let (after, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
         observer.correct_payload(rod, velocity, &(after + per_newton * step.thrust), &after);
-        let (position, velocity) = advance(position, velocity, &(after + per_newton * drift.thrust), dt);
+        (to.position, to.velocity) = advance(position, velocity, &(after + per_newton * drift.thrust), dt);
 
         let (after, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
         observer.correct_rod(rod, rod_rate, &(after + per_newton * step.thrust), &after);
-        let (rod, rod_rate) = across(advance(rod, rod_rate, &(after + per_newton * drift.thrust), dt));
+        (to.rod, to.rod_rate) = across(advance(rod, rod_rate, &(after + per_newton * drift.thrust), dt));
 
         let (after, per_newton_metre) = model.body(&applied.torque, &observer.estimate().torque);
         observer.correct_body(body_rate, &(after + per_newton_metre.component_mul(&step.torque)), &after);
         let mean = after + per_newton_metre.component_mul(&drift.torque);
-        let (attitude, body_rate) = turn(attitude, body_rate, &mean, dt);
+        (to.attitude, to.body_rate) = turn(attitude, body_rate, &mean, dt);
 
-        let zeta = propagate(&self.memory.zeta, self.memory.u_zeta, self.memory.half_hold);
-        let horizon = self.memory.horizon;
+        ahead.zeta = propagate(zeta, *u_zeta, *half_hold);
         if self.memory.expected.is_some() {
-            return Ahead { state: self.fly_through(sampled), horizon, zeta };
+            self.fly_through(sampled);
         }
-        Ahead { state: State { position, velocity, rod, rod_rate, attitude, body_rate }, horizon, zeta }
     }
 
     /// The state ahead, through the commands in flight: the model, and the disturbances at their
     /// rates, in a fixed number of steps (11.10).
-    #[inline(never)]
-    fn fly_through(&mut self, sampled: &State<T>) -> State<T> {
+    #[cold]
+    fn fly_through(&mut self, sampled: &State<T>) {
         let Memory { weighed, period, rest, actuators, observer, .. } = &self.memory;
         let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
-        let coming = (*rest, actuators.arriving().plus(&actuators.drift()));
+        let coming = (*rest, actuators.arriving().plus(actuators.drift()));
         let (state, expected) =
             in_flight.chain([coming]).fold((*sampled, *observer.estimate()), |(state, known), (time, mean)| {
                 pass(weighed, &state, &known, &mean, time)
             });
         self.memory.expected = Some(expected);
-        state
+        self.memory.ahead.state = state;
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
@@ -373,24 +381,34 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// If the limit changed the thrust, ζ1 is corrected by (11.7) so that it is the vertical
     /// acceleration under the thrust actually applied. `alignment` = (q·e3)(q·b3).
     #[inline(never)]
-    pub(crate) fn commit(&mut self, command: Command<T>, u_zeta: T, alignment: T) -> Command<T> {
-        if self.memory.is_softening {
-            self.memory.is_softening = false;
-            self.memory.bump = self.memory.actuators.arriving().minus(&command);
-        }
-        let smooth = command.plus(&self.memory.bump);
-        self.memory.bump = self.memory.bump.times(self.memory.fade);
-        let wanted = self.memory.actuators.led(&smooth);
-        let applied = self.actuation.apply(&wanted);
-        let acting = self.memory.actuators.unled(&applied);
-        self.memory.actuators.push(applied);
-        self.memory.is_saturated = applied.thrust != wanted.thrust;
-        self.memory.asked = smooth;
+    pub(crate) fn commit(&mut self, command: &Command<T>, u_zeta: T, alignment: T) -> Command<T> {
+        self.memory.asked = if let Bump::None = self.memory.bump { *command } else { self.smoothed(command) };
+        let Memory { actuators, asked, is_saturated, .. } = &mut self.memory;
+        let led = actuators.led(asked);
+        let wanted = led.as_ref().unwrap_or(asked);
+        let applied = self.actuation.apply(wanted);
+        let acting = actuators.unled(&applied).thrust;
+        *is_saturated = applied.thrust != wanted.thrust;
+        actuators.push(&applied);
         self.memory.zeta = propagate(&self.memory.zeta, u_zeta, self.memory.period);
-        let missing = command.thrust - acting.thrust;
+        let missing = command.thrust - acting;
         self.memory.zeta[0] += missing * alignment * self.memory.weighed.per_total_mass();
         self.memory.u_zeta = u_zeta;
         applied
+    }
+
+    /// `command` with what is left of its step against what was applied before.
+    #[cold]
+    fn smoothed(&mut self, command: &Command<T>) -> Command<T> {
+        let Memory { bump, fade, actuators, .. } = &mut self.memory;
+        let left = match *bump {
+            Bump::None => return *command,
+            Bump::Coming => actuators.arriving().minus(command),
+            Bump::Fading(left) => left,
+        };
+        let next = left.times(*fade);
+        *bump = if next.is_below(T::lit(FADED)) { Bump::None } else { Bump::Fading(next) };
+        command.plus(&left)
     }
 
     /// ζ when the next command begins to act (the next sample, without latency and lag).
@@ -430,20 +448,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 }
 
-/// Copies a state number by number: as a block it would be copied by a call, at three times the
-/// cost.
-#[inline(always)]
+/// Copies a state vector by vector: as a block it would be copied by a call, at three times the
+/// cost, and in the caller number by number.
+#[inline(never)]
 fn remember<T: Real>(last: &mut State<T>, state: &State<T>) {
-    let State { position, velocity, rod, rod_rate, attitude, body_rate } = state;
-    let pairs = [
-        (&mut last.position, position),
-        (&mut last.velocity, velocity),
-        (&mut last.rod, rod),
-        (&mut last.rod_rate, rod_rate),
-        (&mut last.body_rate, body_rate),
-    ];
-    for (to, from) in pairs {
-        to.iter_mut().zip(from.iter()).for_each(|(to, from)| *to = *from);
-    }
-    last.attitude.iter_mut().zip(attitude.iter()).for_each(|(to, from)| *to = *from);
+    last.position = state.position;
+    last.velocity = state.velocity;
+    last.rod = state.rod;
+    last.rod_rate = state.rod_rate;
+    last.attitude = state.attitude;
+    last.body_rate = state.body_rate;
 }
