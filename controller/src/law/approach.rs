@@ -187,7 +187,7 @@ impl<T: Real> Approach<T> {
     /// compared with the one there.
     pub(crate) fn at<P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) -> Self {
         while !path.search(position) {}
-        Self { path_det: path.outputs(&at_rest(position)).solve([T::zero(); 3]).1, ..Self::none() }
+        Self { path_det: step_to(path, &at_rest(position)).2, ..Self::none() }
     }
 
     /// Begins at `state`, if the path has been searched and a point of it is found; v_d is flown
@@ -372,9 +372,7 @@ fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) ->
     let (longest, close) = (T::lit(LONGEST_STEP), T::lit(CLOSE));
     let mut at = at_rest(position);
     for _ in 0..SEARCH_STEPS {
-        let outputs = path.outputs(&at);
-        let [h1, h2] = &outputs.surfaces;
-        let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);
+        let (outputs, step, path_det) = step_to(path, &at);
         let squared = step.dot(&step);
         let step = if squared.is_finite() {
             step * (longest / squared.max(longest * longest).sqrt())
@@ -390,6 +388,20 @@ fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) ->
         }
     }
     None
+}
+
+/// The outputs at `position`, the step across the tangent from the path's linearized functions to
+/// there, m, and (∇h1 × ∇h2)·ρ.
+// Apart: a step on the path has its own, without what is known only here.
+#[inline(never)]
+fn step_to<T: Real, P: Path<T> + ?Sized>(
+    path: &mut P,
+    position: &PositionSeries<T>,
+) -> (Outputs<T>, Vector3<T>, T) {
+    let outputs = path.outputs(position);
+    let [h1, h2] = &outputs.surfaces;
+    let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);
+    (outputs, step, path_det)
 }
 
 #[cfg(test)]

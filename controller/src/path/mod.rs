@@ -97,7 +97,7 @@ impl<T: Real> Outputs<T> {
 
     /// The vector (5.6) whose products with ∇h1, ∇h2 and ρ are `products`, and the determinant (∇h1
     /// × ∇h2)·ρ of this system; infinite or NaN where that is zero.
-    #[inline(never)]
+    #[inline(always)]
     pub fn solve(&self, products: [T; 3]) -> (Vector3<T>, T) {
         let ([g1, g2], rho) = (&self.gradients, &self.tangent);
         let [r1, r2, r3] = products;
