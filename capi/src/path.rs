@@ -49,8 +49,8 @@ mod lean {
     }
 
     impl Path<f32> for FlownPath {
-        fn outputs(&mut self, position: &PositionSeries<f32>) -> Outputs<f32> {
-            either!(self, path => path.outputs(position))
+        fn evaluate(&mut self, position: &PositionSeries<f32>, outputs: &mut Outputs<f32>) {
+            either!(self, path => path.evaluate(position, outputs));
         }
 
         fn search(&mut self, position: &Vector3<f32>) -> bool {

@@ -64,7 +64,7 @@ pub use law::gains::{GainError, Pole, is_hurwitz, place};
 pub use law::lift::{Lift, lift};
 pub use law::lower::lower;
 pub use law::margins::{Margin, Margins};
-pub use law::solution::Solution;
+pub use law::solution::{Answer, Solution};
 pub use law::track::{Reference, Track, TrackGains, TrackXi, track};
 pub use law::{Ahead, Law};
 pub use model::*;

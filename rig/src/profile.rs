@@ -84,8 +84,8 @@ where
     S: Table<T>,
 {
     #[inline]
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
-        either!(self, path => path.outputs(position))
+    fn evaluate(&mut self, position: &PositionSeries<T>, outputs: &mut Outputs<T>) {
+        either!(self, path => path.evaluate(position, outputs));
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {

@@ -172,7 +172,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         let _ = phase;
         self.last = either!(&mut self.law, supervisor => {
             let controller::Output { command, mode, fault, warning } = supervisor.step(measured, request);
-            let limited = supervisor.solution().is_some() && supervisor.sampler().is_limited();
+            let limited = supervisor.answer().is_some() && supervisor.sampler().is_limited();
             Output { command, mode, fault, warning, limited }
         });
         &self.last
@@ -209,7 +209,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// The compensator's input, m/s⁶, in the last step, if the law flew.
     #[must_use]
     pub fn u_zeta(&self) -> Option<T> {
-        either!(&self.law, supervisor => supervisor.solution().map(|solution| solution.u_zeta))
+        either!(&self.law, supervisor => supervisor.answer().map(|answer| answer.u_zeta))
     }
 
     /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
@@ -294,12 +294,12 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         match &self.law {
             Law::Follow(supervisor) => supervisor.solution().map(|solution| {
                 let xi = &solution.xi;
-                LawNumbers::new(solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4])
+                LawNumbers::new(&solution, [&xi.h1, &xi.h2, &xi.h3, &xi.h4])
             }),
             #[cfg(feature = "tracking")]
             Law::Track(supervisor, _) => supervisor.solution().map(|solution| {
                 let [p1, p2, p3] = &solution.xi.position;
-                LawNumbers::new(solution, [p1, p2, p3, &solution.xi.yaw])
+                LawNumbers::new(&solution, [p1, p2, p3, &solution.xi.yaw])
             }),
         }
     }

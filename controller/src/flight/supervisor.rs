@@ -12,7 +12,7 @@ use crate::flight::payload::Payload;
 use crate::law::approach::{ApproachLimits, Pace};
 use crate::law::hold::{Hold, Swing};
 use crate::law::margins::{Margin, Margins};
-use crate::law::solution::Solution;
+use crate::law::solution::{Answer, Solution};
 use crate::law::Law;
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
@@ -78,27 +78,29 @@ const CALM_TILT: f64 = 0.95;
 ///
 /// Whatever bits come in, the command that goes out is finite and within the limits, its fault is
 /// typed, and nothing that came in stays: the next good state is flown on.
+// In this order: what every step on the path needs comes before what is large or of other modes.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
-    sampler: Sampler<T, A>,
-    law: L,
-    envelope: Envelope<T>,
-    pace: Pace<T>,
-    policy: Policy<T>,
     mode: Mode,
     request: Request,
     fault: Option<Fault>,
     /// The last command was the law's.
     is_by_law: bool,
-    hold: Hold<T>,
-    cable: Cable<T>,
-    payload: Payload<T>,
-    landing: Landing<T>,
-    /// p3 of the UAV when the last take-off, hold or landing began, m.
-    from: T,
     /// Time without a good state, and of calm in hold, s.
     blind: T,
     calm: T,
+    envelope: Envelope<T>,
+    cable: Cable<T>,
+    payload: Payload<T>,
+    landing: Landing<T>,
+    sampler: Sampler<T, A>,
+    law: L,
+    policy: Policy<T>,
+    pace: Pace<T>,
+    hold: Hold<T>,
+    /// p3 of the UAV when the last take-off, hold or landing began, m.
+    from: T,
 }
 
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
@@ -143,8 +145,14 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     /// The law's solution of the last step, if the law flew it: the command before limits, and the
     /// numbers behind it.
-    pub fn solution(&self) -> Option<&Solution<T, L::Xi>> {
+    pub fn solution(&self) -> Option<Solution<T, L::Xi>> {
         self.is_by_law.then(|| self.law.solution())
+    }
+
+    /// The same without ξ.
+    #[inline]
+    pub fn answer(&self) -> Option<&Answer<T>> {
+        self.is_by_law.then(|| self.law.answer())
     }
 
     /// The law that is supervised.
@@ -533,11 +541,11 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
         self.sampler.ask(&mut self.law);
-        let solution = self.law.solution();
-        let standing = self.envelope.assess(&solution.margins, self.law.approach().path_det());
+        let answer = self.law.answer();
+        let standing = self.envelope.assess(&answer.margins, self.law.approach().path_det());
         let fault = if let Standing::Beyond(margin) = standing {
             Some(Fault::Margin(margin))
-        } else if !solution.is_finite() {
+        } else if !answer.is_finite() {
             Some(Fault::NotFinite)
         } else if self.payload.is_lost(self.sampler.weight(), self.sampler.period()) {
             Some(Fault::PayloadLost)

@@ -12,7 +12,7 @@ use crate::law::gains::{self, GainError};
 use crate::law::lift::{Lift, lift};
 use crate::law::lower::lower;
 use crate::law::margins::Margins;
-use crate::law::solution::{Solution, dot};
+use crate::law::solution::{Answer, Solution, dot};
 use crate::law::speed_factor::SpeedFactor;
 use crate::law::{Ahead, Law};
 use crate::path::{Outputs, Path};
@@ -76,6 +76,14 @@ impl<T: Real> Gains<T> {
         })
     }
 
+    /// The same of Taylor coefficients in the place of derivatives: times k!.
+    fn of_coefficients(mut self) -> Self {
+        for k in [&mut self.k1[..], &mut self.k2, &mut self.k3, &mut self.k4] {
+            k.iter_mut().zip(T::FACTORIAL).for_each(|(k, factorial)| *k = *k * factorial);
+        }
+        self
+    }
+
     /// `Ok` if every closed loop is stable, integral action included.
     ///
     /// # Errors
@@ -101,6 +109,25 @@ pub struct Xi<T> {
     pub h4: [T; 2],
 }
 
+impl<T: Real> Xi<T> {
+    /// From the path's outputs and the error of the yaw.
+    fn of(outputs: &Outputs<T>, h4: [T; 2]) -> Self {
+        let [s1, s2] = &outputs.surfaces;
+        Self {
+            h1: core::array::from_fn(|k| s1.derivative(k)),
+            h2: core::array::from_fn(|k| s2.derivative(k)),
+            h3: core::array::from_fn(|k| outputs.speed_error.derivative(k)),
+            h4,
+        }
+    }
+}
+
+/// h4 and ḣ4.
+#[inline(always)]
+fn yaw_error<T: Real>(yaw: &Yaw<T>, outputs: &Outputs<T>) -> [T; 2] {
+    [(yaw.angle - outputs.yaw.value()).wrap_angle(), yaw.rate - outputs.yaw.derivative(1)]
+}
+
 /// The path-following law at `state`, ζ, the integrals ξ̃ = ∫(h1, h2, h3) and a known disturbance
 /// as they are, without looking ahead.
 pub fn follow<T: Real, P: Path<T> + ?Sized>(
@@ -115,35 +142,29 @@ pub fn follow<T: Real, P: Path<T> + ?Sized>(
     let lift = lift(vehicle, state, zeta, disturbance);
     let outputs = path.outputs(&lift.position);
     let yaw = Yaw::of(state);
-    let mut solution = Solution::default();
-    solution.read(gains, integral, &yaw, &outputs);
-    solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
-    solution
+    let xi = Xi::of(&outputs, yaw_error(&yaw, &outputs));
+    let mut answer = Answer::none();
+    answer.nu = nu(gains, integral, &xi);
+    answer.lower(vehicle, state, disturbance, &lift, &yaw, &outputs);
+    answer.with(xi)
 }
 
-impl<T: Real> Solution<T, Xi<T>> {
-    /// ξ and ν, from the path's outputs. Here and below each number is written where it stays, so
+/// ν of (5.3).
+#[inline(always)]
+fn nu<T: Real>(gains: &Gains<T>, integral: &[T; 3], xi: &Xi<T>) -> [T; 4] {
+    [
+        -(dot(&gains.k1, &xi.h1) + gains.integral[0] * integral[0]),
+        -(dot(&gains.k2, &xi.h2) + gains.integral[1] * integral[1]),
+        -(dot(&gains.k3, &xi.h3) + gains.integral[2] * integral[2]),
+        -dot(&gains.k4, &xi.h4),
+    ]
+}
+
+impl<T: Real> Answer<T> {
+    /// The command and u_ζ that give ν, and the margins. Each number is written where it stays, so
     /// that none is copied.
     #[inline(always)]
-    fn read(&mut self, gains: &Gains<T>, integral: &[T; 3], yaw: &Yaw<T>, outputs: &Outputs<T>) {
-        let [s1, s2] = &outputs.surfaces;
-        let s3 = &outputs.speed_error;
-        self.xi.h1 = core::array::from_fn(|k| s1.derivative(k));
-        self.xi.h2 = core::array::from_fn(|k| s2.derivative(k));
-        self.xi.h3 = core::array::from_fn(|k| s3.derivative(k));
-        self.xi.h4 = [(yaw.angle - outputs.yaw.value()).wrap_angle(), yaw.rate - outputs.yaw.derivative(1)];
-        let xi = &self.xi;
-        self.nu = [
-            -(dot(&gains.k1, &xi.h1) + gains.integral[0] * integral[0]),
-            -(dot(&gains.k2, &xi.h2) + gains.integral[1] * integral[1]),
-            -(dot(&gains.k3, &xi.h3) + gains.integral[2] * integral[2]),
-            -dot(&gains.k4, &xi.h4),
-        ];
-    }
-
-    /// The command and u_ζ that give ν, and the margins.
-    #[inline(always)]
-    fn answer(
+    fn lower(
         &mut self,
         vehicle: &Vehicle<T>,
         state: &State<T>,
@@ -181,22 +202,24 @@ const RECOVERY: f64 = 5.0;
 const AT_REST: f64 = 0.01;
 
 /// The path-following law with its memory.
+// In this order: what every step needs comes before what may be large.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Follow<T, P> {
-    path: P,
-    /// As they act: those of h1, h2 and h3 are raised by (11.5).
+    /// As they act: those of h1, h2 and h3 are raised by (11.5), and all are of Taylor coefficients.
     gains: Gains<T>,
     integral: [T; 3],
-    /// The last answer, kept where it was made.
-    solution: Solution<T, Xi<T>>,
+    /// The last outputs, error of yaw and answer, kept where they were made.
+    outputs: Outputs<T>,
+    yaw_error: [T; 2],
+    answer: Answer<T>,
     /// Time since the thrust was limited, s.
     unsaturated: T,
     approach: Approach<T>,
     speed_factor: SpeedFactor<T>,
-    /// v_d at the last answer, m/s.
-    prescribed: T,
     /// How long the payload has rested at the path's stop, s.
     rested: T,
+    path: P,
 }
 
 impl<T: Real, P: Path<T>> Follow<T, P> {
@@ -213,13 +236,14 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         gains.k3[0] += gains.integral[2] * lead;
         Ok(Self {
             path,
-            gains,
+            gains: gains.of_coefficients(),
             integral: [T::zero(); 3],
-            solution: Solution::default(),
+            outputs: Outputs::none(),
+            yaw_error: [T::zero(); 2],
+            answer: Answer::none(),
             unsaturated: T::lit(RECOVERY),
             approach: Approach::none(),
             speed_factor: SpeedFactor::one(sampling.period, sampling.horizon()),
-            prescribed: T::zero(),
             rested: T::zero(),
         })
     }
@@ -267,8 +291,8 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
     #[inline(always)]
     fn rest(&mut self, period: T) {
         let Some(dwell) = self.path.dwell() else { return };
-        let [error, ..] = self.solution.xi.h3;
-        let is_at_rest = self.prescribed.abs() < T::lit(AT_REST) && error.abs() < T::lit(AT_REST);
+        let Outputs { prescribed, speed_error, .. } = &self.outputs;
+        let is_at_rest = [prescribed, speed_error].iter().all(|speed| speed.value().abs() < T::lit(AT_REST));
         self.rested = if is_at_rest { self.rested + period } else { T::zero() };
         if self.rested > dwell {
             self.go_on();
@@ -300,20 +324,28 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
         let Ahead { state, zeta, horizon } = ahead;
         let mut lift = lift(vehicle, state, zeta, disturbance);
         let fading = self.approach.leave(*horizon, &mut lift.position);
-        let mut outputs = self.path.outputs(&lift.position);
+        let outputs = &mut self.outputs;
+        self.path.evaluate(&lift.position, outputs);
         if let Some(fading) = fading {
-            self.approach.fade(&fading, &mut outputs);
+            self.approach.fade(&fading, outputs);
         }
-        self.prescribed = outputs.prescribed.value();
-        self.speed_factor.apply(&mut outputs);
+        self.speed_factor.apply(outputs);
         let yaw = Yaw::of(state);
-        self.solution.read(&self.gains, &self.integral, &yaw, &outputs);
-        self.solution.answer(vehicle, state, disturbance, &lift, &yaw, &outputs);
+        self.yaw_error = yaw_error(&yaw, outputs);
+        let ([s1, s2], s3) = (&outputs.surfaces, &outputs.speed_error);
+        let coefficients =
+            Xi { h1: s1.truncate().0, h2: s2.truncate().0, h3: s3.truncate().0, h4: self.yaw_error };
+        self.answer.nu = nu(&self.gains, &self.integral, &coefficients);
+        self.answer.lower(vehicle, state, disturbance, &lift, &yaw, outputs);
     }
 
     #[inline(always)]
-    fn solution(&self) -> &Solution<T, Xi<T>> {
-        &self.solution
+    fn answer(&self) -> &Answer<T> {
+        &self.answer
+    }
+
+    fn solution(&self) -> Solution<T, Xi<T>> {
+        self.answer.with(Xi::of(&self.outputs, self.yaw_error))
     }
 
     #[inline(always)]
@@ -328,8 +360,8 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
         // way back for a steady error.
         self.unsaturated = if is_saturated { T::zero() } else { self.unsaturated + period };
         if self.unsaturated >= T::lit(RECOVERY) {
-            let Xi { h1: [h1, ..], h2: [h2, ..], h3: [h3, ..], .. } = self.solution.xi;
-            for (integral, h) in self.integral.iter_mut().zip([h1, h2, h3]) {
+            let Outputs { surfaces: [h1, h2], speed_error, .. } = &self.outputs;
+            for (integral, h) in self.integral.iter_mut().zip([h1.value(), h2.value(), speed_error.value()]) {
                 *integral += period * h;
             }
         }

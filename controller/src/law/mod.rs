@@ -16,7 +16,7 @@ use model::{Disturbance, Real, State, Vehicle};
 
 use crate::error::Refused;
 use approach::{Approach, Pace};
-use solution::Solution;
+use solution::{Answer, Solution};
 
 /// Where a law is to be evaluated: at the instant its command acts.
 #[derive(Clone, Copy, Debug)]
@@ -34,19 +34,21 @@ pub struct Ahead<T> {
 ///
 /// What every law shares, ζ, the observers and the commands on their way, is the
 /// [`Sampler`](crate::Sampler)'s, which lends it to one law at a time. Every period it asks the law
-/// for an answer with [`evaluate`](Self::evaluate), and where that is what flies, tells it so with
+/// for an [`answer`](Self::answer) with [`evaluate`](Self::evaluate), and where that flies, tells it so with
 /// [`accept`](Self::accept). A law that is [restarted](Self::restart) or [joins](Self::join)
 /// remembers nothing of before.
 pub trait Law<T: Real> {
     /// The outputs with their derivatives, ξ.
     type Xi: Copy;
 
-    /// Evaluates the law at `ahead` against `disturbance`; the answer is then in
-    /// [`solution`](Self::solution).
+    /// Evaluates the law at `ahead` against `disturbance`.
     fn evaluate(&mut self, vehicle: &Vehicle<T>, ahead: &Ahead<T>, disturbance: &Disturbance<T>);
 
     /// The last answer, all zeros before the first; its command is what it was before the limits.
-    fn solution(&self) -> &Solution<T, Self::Xi>;
+    fn answer(&self) -> &Answer<T>;
+
+    /// The same with ξ, which is made when it is asked for.
+    fn solution(&self) -> Solution<T, Self::Xi>;
 
     /// Tells the law that its last answer flies, limited or not as `is_saturated` says, and moves
     /// it on by a `period`, s.

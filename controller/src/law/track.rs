@@ -12,7 +12,7 @@ use crate::law::gains::{self, GainError};
 use crate::law::lift::{Lift, lift};
 use crate::law::lower::lower;
 use crate::law::margins::Margins;
-use crate::law::solution::{Solution, dot};
+use crate::law::solution::{Answer, Solution, dot};
 use crate::law::{Ahead, Law};
 use crate::path::PositionSeries;
 use crate::ranges::BANDWIDTH;
@@ -124,10 +124,12 @@ pub fn track<T: Real>(
     zeta: &[T; 4],
     disturbance: &Disturbance<T>,
 ) -> Solution<T, TrackXi<T>> {
-    answer(vehicle, gains, reference, state, &lift(vehicle, state, zeta, disturbance), disturbance)
+    let lift = lift(vehicle, state, zeta, disturbance);
+    let (answer, xi) = answer(vehicle, gains, reference, state, &lift, disturbance);
+    answer.with(xi)
 }
 
-/// The law's answer to what was lifted.
+/// The law's answer to what was lifted, and ξ.
 #[inline(always)]
 fn answer<T: Real>(
     vehicle: &Vehicle<T>,
@@ -136,7 +138,7 @@ fn answer<T: Real>(
     state: &State<T>,
     lift: &Lift<T>,
     disturbance: &Disturbance<T>,
-) -> Solution<T, TrackXi<T>> {
+) -> (Answer<T>, TrackXi<T>) {
     let yaw = Yaw::of(state);
 
     let [x, y, z] = &reference.position;
@@ -150,13 +152,12 @@ fn answer<T: Real>(
     let yaw_error = [(yaw.angle - reference.yaw.value()).wrap_angle(), yaw.rate - reference.yaw.derivative(1)];
     let yaw_2 = reference.yaw.derivative(2) - dot(&gains.yaw, &yaw_error);
 
-    Solution {
+    let answer = Answer {
         command: Command {
             thrust: lift.thrust(vehicle),
             torque: lower(vehicle, state, lift, &yaw, &position_6, yaw_2, &disturbance.torque),
         },
         u_zeta: position_6.z,
-        xi: TrackXi { position: [p1, p2, p3].map(derivatives), yaw: [yaw.angle, yaw.rate] },
         nu: [position_6.x, position_6.y, position_6.z, yaw_2],
         margins: Margins {
             q3: state.rod.z,
@@ -167,7 +168,8 @@ fn answer<T: Real>(
             reach: T::one(),
             cos_phi_squared: yaw.cos_phi_squared,
         },
-    }
+    };
+    (answer, TrackXi { position: [p1, p2, p3].map(derivatives), yaw: [yaw.angle, yaw.rate] })
 }
 
 /// Derivatives 0 to 5.
@@ -181,7 +183,8 @@ fn derivatives<T: Real>(p: &Series<T, 7>) -> [T; 6] {
 pub struct Track<T> {
     gains: TrackGains<T>,
     reference: Reference<T>,
-    solution: Solution<T, TrackXi<T>>,
+    answer: Answer<T>,
+    xi: TrackXi<T>,
     approach: Approach<T>,
 }
 
@@ -194,7 +197,8 @@ impl<T: Real> Track<T> {
         gains.check()?;
         let zero = T::zero();
         let reference = Reference { position: [Series::constant(zero); 3], yaw: Series::constant(zero) };
-        Ok(Self { gains, reference, solution: Solution::default(), approach: Approach::none() })
+        let (answer, xi) = (Answer::none(), TrackXi::default());
+        Ok(Self { gains, reference, answer, xi, approach: Approach::none() })
     }
 
     /// Sets the reference about the coming sample. Call it every period before the step.
@@ -215,12 +219,16 @@ impl<T: Real> Law<T> for Track<T> {
         if let Some(fading) = self.approach.leave(*horizon, &mut lift.position) {
             self.approach.fade_yaw(&fading, &mut reference.yaw);
         }
-        self.solution = answer(vehicle, &self.gains, &reference, state, &lift, disturbance);
+        (self.answer, self.xi) = answer(vehicle, &self.gains, &reference, state, &lift, disturbance);
     }
 
     #[inline(always)]
-    fn solution(&self) -> &Solution<T, TrackXi<T>> {
-        &self.solution
+    fn answer(&self) -> &Answer<T> {
+        &self.answer
+    }
+
+    fn solution(&self) -> Solution<T, TrackXi<T>> {
+        self.answer.with(self.xi)
     }
 
     #[inline(always)]

@@ -82,7 +82,7 @@ pub struct Outputs<T> {
 
 impl<T: Real> Outputs<T> {
     /// Of a path that has no point: all zeros.
-    fn none() -> Self {
+    pub(crate) fn none() -> Self {
         let (zero, vector) = (T::zero(), Vector3::zeros());
         Self {
             surfaces: [Series::constant(zero); 2],
@@ -111,9 +111,16 @@ impl<T: Real> Outputs<T> {
 
 /// A curve with speed and yaw along it.
 pub trait Path<T: Real> {
-    /// The outputs (3.3) along `position`. Takes `&mut self` for paths that remember their nearest
-    /// point.
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T>;
+    /// Evaluates the outputs (3.3) along `position`, each number where it stays. Takes `&mut self`
+    /// for paths that remember their nearest point.
+    fn evaluate(&mut self, position: &PositionSeries<T>, outputs: &mut Outputs<T>);
+
+    /// The outputs along `position`.
+    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+        let mut outputs = Outputs::none();
+        self.evaluate(position, &mut outputs);
+        outputs
+    }
 
     /// Looks for the point of the whole curve that is nearest to the payload at `position` (N, m),
     /// as far as one control period has time for: called once a period when a controller starts,
@@ -142,8 +149,8 @@ pub trait Path<T: Real> {
 
 impl<T: Real, P: Path<T> + ?Sized> Path<T> for &mut P {
     #[inline]
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
-        (**self).outputs(position)
+    fn evaluate(&mut self, position: &PositionSeries<T>, outputs: &mut Outputs<T>) {
+        (**self).evaluate(position, outputs);
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
@@ -189,18 +196,17 @@ where
     Y: YawProfile<T>,
 {
     #[inline(never)]
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+    fn evaluate(&mut self, position: &PositionSeries<T>, outputs: &mut Outputs<T>) {
         let located = self.curve.locate(position);
         let prescribed = self.speed.speed(&self.curve, position, &located);
-        Outputs {
-            surfaces: located.surfaces,
-            gradients: located.gradients,
-            tangent: located.tangent(),
-            speed_error: located.speed - prescribed,
-            prescribed,
-            yaw: self.yaw.yaw(position, &located),
-            reach_margin: located.reach_margin,
-        }
+        // One by one: all of it would be copied by a call.
+        outputs.surfaces = located.surfaces;
+        outputs.gradients = located.gradients;
+        outputs.tangent = located.tangent();
+        outputs.speed_error = located.speed - prescribed;
+        outputs.prescribed = prescribed;
+        outputs.yaw = self.yaw.yaw(position, &located);
+        outputs.reach_margin = located.reach_margin;
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {

@@ -105,12 +105,10 @@ const STEPS: usize = 8;
 /// A delay line of whole periods, then a first-order lag (11.6): the commands' way to thrust and
 /// torque. A lag is led (11.9): what is sent goes beyond what is wanted, so that thrust and torque
 /// come to it sooner.
+// In this order: what every step needs comes before what is large.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub(crate) struct Actuators<T> {
-    /// A ring of the last commands; `newest` counts them, and the last one stands there.
-    line: [Command<T>; SLOTS],
-    newest: usize,
-    delay: usize,
     /// What acts up to this sample, and by how much that stepped at the last one: nothing with a
     /// lag.
     applied: Command<T>,
@@ -118,7 +116,10 @@ pub(crate) struct Actuators<T> {
     /// What the mean over the law's look ahead has over what will act when the coming command begins
     /// to: nothing without a lag.
     drift: Command<T>,
-    /// The rest is of a lag.
+    delay: usize,
+    /// A ring of the last commands; `newest` counts them, and the last one stands there.
+    newest: usize,
+    line: [Command<T>; SLOTS],
     lag: Option<Lag<T>>,
 }
 

@@ -168,7 +168,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Controller<T, L, A> {
         self.sampler.sample(sampled);
         self.sampler.ask(&mut self.law);
         let command = self.sampler.accept(&mut self.law);
-        Solution { command, ..*self.law.solution() }
+        Solution { command, ..self.law.solution() }
     }
 
     /// From hover, if there is a state to do so.

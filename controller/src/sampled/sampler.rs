@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use crate::error::Refused;
 use crate::law::compensator::{continuing, propagate};
 use crate::law::lift::lift;
-use crate::law::solution::Solution;
+use crate::law::solution::Answer;
 use crate::law::{Ahead, Law};
 use crate::ranges::MAX_THRUST;
 use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
@@ -38,7 +38,10 @@ pub struct Sampler<T, A = ActuatorLimits<T>> {
     actuation: A,
 }
 
+// In this order: an instruction reaches a kilobyte from a pointer, and what every step needs comes
+// before what is large.
 #[derive(Clone, Debug)]
+#[repr(C)]
 struct Memory<T> {
     /// As it was told, and with all mass as it is implied.
     vehicle: Vehicle<T>,
@@ -65,8 +68,8 @@ struct Memory<T> {
     is_saturated: bool,
     /// The last command before its limits.
     asked: Command<T>,
-    actuators: Actuators<T>,
     observer: Observer<T>,
+    actuators: Actuators<T>,
 }
 
 /// A command's step against what was applied before the law took over, which fades.
@@ -145,7 +148,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Flies the answer of `law`: limits and sends its command, and moves on by a period.
     #[inline(always)]
     pub(crate) fn accept<L: Law<T>>(&mut self, law: &mut L) -> Command<T> {
-        let Solution { command, u_zeta, margins, .. } = law.solution();
+        let Answer { command, u_zeta, margins, .. } = law.answer();
         self.weigh(margins.lambda);
         let applied = self.commit(command, *u_zeta, margins.q3 * margins.q_b3);
         law.accept(self.memory.period, self.memory.is_saturated);

@@ -73,7 +73,7 @@ impl<P: Path<f32>> Case for Following<P> {
     fn digest(&self, output: &Self::Output, digest: &mut Digest) {
         digest_command(&output.command, digest);
         if let Some(solution) = self.supervisor.solution() {
-            digest_solution(solution, digest);
+            digest_solution(&solution, digest);
         }
     }
 }

@@ -393,7 +393,7 @@ impl<T: Real, S: Table<T>> Route<T, S> {
 
 impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
     #[inline(never)]
-    fn outputs(&mut self, position: &PositionSeries<T>) -> Outputs<T> {
+    fn evaluate(&mut self, position: &PositionSeries<T>, outputs: &mut Outputs<T>) {
         let p = now(position);
         let one = T::one();
         let step = track::<_, NEWTON_STEPS>(&self.local, &self.error(&p), T::lit(LONGEST)).clamp(-one, one);
@@ -403,7 +403,8 @@ impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
         let is_backward = self.is_backward;
         let Some(window) = self.table.knots().get(first.saturating_add(place.span)..).and_then(<[_]>::first_chunk)
         else {
-            return Outputs::none();
+            *outputs = Outputs::none();
+            return;
         };
         let (local, mut weights) = curve(window, &place);
         let [_, _, k2, k3, k4, k5, ..] = window;
@@ -434,7 +435,7 @@ impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
         let grad_sigma = c_1 * (one / nearest.divisor);
         let [n1, n2] = surfaces.normals;
         let [n1_1, n2_1] = surfaces.changes;
-        Outputs {
+        *outputs = Outputs {
             surfaces: surfaces.heights,
             gradients: [
                 n1 + grad_sigma * (r.dot(&n1_1) - c_1.dot(&n1)),
@@ -445,7 +446,7 @@ impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
             prescribed,
             yaw: nearest.advance.compose(&yaw),
             reach_margin: nearest.divisor / nearest.speed_squared,
-        }
+        };
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
