@@ -202,8 +202,19 @@ impl<T: Real, const N: usize> Rotors<T, N> {
     }
 
     /// The speeds for `command`, and what they apply. Total: what is not a number counts as zero.
-    #[inline]
     pub fn allocate(&self, command: &Command<T>) -> Allocation<T, N> {
+        let (thrusts, applied) = self.share_out(command);
+        Allocation {
+            speeds: thrusts.map(|force| (force * self.per_thrust_coefficient).sqrt()),
+            thrusts,
+            applied,
+            saturated: applied != *command,
+        }
+    }
+
+    /// The forces for `command`, and what they apply.
+    #[inline(always)]
+    fn share_out(&self, command: &Command<T>) -> ([T; N], Command<T>) {
         let (zero, one) = (T::zero(), T::one());
         let [_, b1, b2, b3] = self.bounds;
         let cut = |x: T, bound: T| {
@@ -254,16 +265,9 @@ impl<T: Real, const N: usize> Rotors<T, N> {
         }
         let applied =
             Command { thrust: applied_thrust, torque: Vector3::new(roll * kept, pitch * kept, yaw * yaw_kept) };
-        Allocation {
-            speeds: forces.map(|force| (force * self.per_thrust_coefficient).sqrt()),
-            thrusts: forces,
-            applied,
-            saturated: applied != *command,
-        }
+        (forces, applied)
     }
-}
 
-impl<T: Real, const N: usize> Rotors<T, N> {
     /// Thrust, N, and torque about b1, b2 and b3, N·m, that no command for these rotors exceeds:
     /// each rotor's largest force with its lever, added up.
     #[must_use]
@@ -320,13 +324,14 @@ impl<T: Real, const N: usize> Actuation<T> for Rotors<T, N> {
         Ok(())
     }
 
-    #[inline]
+    // Without the forces themselves, of which half of the cost is.
+    #[inline(never)]
     fn apply(&self, command: &Command<T>) -> Command<T> {
-        self.allocate(command).applied
+        self.share_out(command).1
     }
 
     fn least_thrust(&self) -> T {
-        self.allocate(&Command::zero()).applied.thrust
+        self.apply(&Command::zero()).thrust
     }
 }
 
