@@ -96,6 +96,7 @@ const fn table(numbers: [f32; 8]) -> [Trapped; 8] {
 }
 
 impl Sealed for Trapped {
+    const EMPTY_SUM: Self = Self(<f32 as Sealed>::EMPTY_SUM);
     const WHOLE: [Self; 8] = table(<f32 as Sealed>::WHOLE);
     const RECIPROCAL: [Self; 8] = table(<f32 as Sealed>::RECIPROCAL);
     const FACTORIAL: [Self; 8] = table(<f32 as Sealed>::FACTORIAL);

@@ -394,10 +394,7 @@ fn nearest<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &Vector3<T>) ->
 /// there, m, and (∇h1 × ∇h2)·ρ.
 // Apart: a step on the path has its own, without what is known only here.
 #[inline(never)]
-fn step_to<T: Real, P: Path<T> + ?Sized>(
-    path: &mut P,
-    position: &PositionSeries<T>,
-) -> (Outputs<T>, Vector3<T>, T) {
+fn step_to<T: Real, P: Path<T> + ?Sized>(path: &mut P, position: &PositionSeries<T>) -> (Outputs<T>, Vector3<T>, T) {
     let outputs = path.outputs(position);
     let [h1, h2] = &outputs.surfaces;
     let (step, path_det) = outputs.solve([h1.value(), h2.value(), T::zero()]);

@@ -79,7 +79,7 @@ impl<T: Real> Gains<T> {
     /// The same of Taylor coefficients in the place of derivatives: times k!.
     fn of_coefficients(mut self) -> Self {
         for k in [&mut self.k1[..], &mut self.k2, &mut self.k3, &mut self.k4] {
-            k.iter_mut().zip(T::FACTORIAL).for_each(|(k, factorial)| *k = *k * factorial);
+            k.iter_mut().zip(T::FACTORIAL).for_each(|(k, factorial)| *k *= factorial);
         }
         self
     }
@@ -333,8 +333,7 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
         let yaw = Yaw::of(state);
         self.yaw_error = yaw_error(&yaw, outputs);
         let ([s1, s2], s3) = (&outputs.surfaces, &outputs.speed_error);
-        let coefficients =
-            Xi { h1: s1.truncate().0, h2: s2.truncate().0, h3: s3.truncate().0, h4: self.yaw_error };
+        let coefficients = Xi { h1: s1.truncate().0, h2: s2.truncate().0, h3: s3.truncate().0, h4: self.yaw_error };
         self.answer.nu = nu(&self.gains, &self.integral, &coefficients);
         self.answer.lower(vehicle, state, disturbance, &lift, &yaw, outputs);
     }

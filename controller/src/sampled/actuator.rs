@@ -240,31 +240,37 @@ impl<T: Real> Actuators<T> {
         self.delay > 0
     }
 
-    /// The commands in flight: for each of a fixed number of steps from the sample to when the coming
-    /// command begins to act, its length in periods and the mean of what acts in it.
-    pub(crate) fn in_flight(&self) -> impl Iterator<Item = (T, Command<T>)> {
-        let steps = self.delay.min(STEPS);
-        let mut acting = self.applied;
-        // There is no step without steps, which the compiler does not see.
-        let passed = move |index: usize| (self.delay * index).checked_div(steps).unwrap_or(0);
-        (0..steps).map(move |index| {
-            let (begin, end) = (passed(index), passed(index + 1));
-            let mut sum = Command::zero();
-            for period in begin..end {
-                let command = self.sent(self.delay - 1 - period);
-                let mean = match &self.lag {
-                    None => command,
-                    Some(lag) => {
-                        let (then, mean) = lag.pass(&acting, &command);
-                        acting = then;
-                        mean
-                    }
-                };
-                sum = sum.plus(&mean);
-            }
-            let periods = T::lit((end - begin) as f64);
-            (periods, sum.times(T::one() / periods))
-        })
+    /// In how many legs the time from the sample to when the coming command begins to act is gone
+    /// through.
+    pub(crate) fn legs(&self) -> usize {
+        self.delay.min(STEPS)
+    }
+
+    /// A leg's length in periods and the mean of what acts in it; `acting` at its beginning, and then
+    /// at its end.
+    #[inline(never)]
+    pub(crate) fn leg(&self, index: usize, acting: &mut Command<T>) -> (T, Command<T>) {
+        // There is no leg without legs, which the compiler does not see.
+        let passed = |index: usize| (self.delay * index).checked_div(self.legs()).unwrap_or(0);
+        let (begin, end) = (passed(index), passed(index + 1));
+        let mut sum = Command::zero();
+        for period in begin..end {
+            sum = sum.plus(&self.pass(acting, self.delay - 1 - period));
+        }
+        let periods = T::lit((end - begin) as f64);
+        (periods, sum.times(T::one() / periods))
+    }
+
+    /// The mean over the period of the command sent `before` the last one; `acting` at its beginning,
+    /// and then at its end.
+    // Apart: in its loop it would stand several times.
+    #[inline(never)]
+    fn pass(&self, acting: &mut Command<T>, before: usize) -> Command<T> {
+        let command = self.sent(before);
+        let Some(lag) = &self.lag else { return command };
+        let (then, mean) = lag.pass(acting, &command);
+        *acting = then;
+        mean
     }
 
     /// What is to be sent for `wanted` to act (11.9), if that is something else.

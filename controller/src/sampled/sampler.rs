@@ -313,14 +313,23 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// The UAV where its command acts: its own position and velocity, after the time that attitude
     /// and body rate look `ahead`.
     pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
-        let Memory { period, rest, actuators, .. } = &self.memory;
-        let step = |uav: Uav<T>, (time, command): (T, Command<T>)| self.pass_uav(&uav, force, &command, time);
-        let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
-        let coming = (*rest, actuators.arriving().plus(actuators.drift()));
-        in_flight.chain([coming]).fold(*uav, step)
+        let Memory { rest, actuators, .. } = &self.memory;
+        let (mut uav, mut acting) = (*uav, *actuators.applied());
+        for index in 0..actuators.legs() {
+            let (time, mean) = self.leg(index, &mut acting);
+            uav = self.pass_uav(&uav, force, &mean, time);
+        }
+        self.pass_uav(&uav, force, &actuators.arriving().plus(actuators.drift()), *rest)
+    }
+
+    /// A leg's time, s, and the mean of what acts in it.
+    fn leg(&self, index: usize, acting: &mut Command<T>) -> (T, Command<T>) {
+        let (periods, mean) = self.memory.actuators.leg(index, acting);
+        (periods * self.memory.period, mean)
     }
 
     /// The UAV `dt` later under a held `command` and what pulls at it, m/s².
+    #[inline(never)]
     fn pass_uav(&self, uav: &Uav<T>, force: &Vector3<T>, command: &Command<T>, dt: T) -> Uav<T> {
         let Memory { vehicle, observer, .. } = &self.memory;
         let b3: Vector3<T> = uav.attitude.column(2).into();
@@ -368,13 +377,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// rates, in a fixed number of steps (11.10).
     #[cold]
     fn fly_through(&mut self, sampled: &State<T>) {
-        let Memory { weighed, period, rest, actuators, observer, .. } = &self.memory;
-        let in_flight = actuators.in_flight().map(|(periods, mean)| (periods * *period, mean));
-        let coming = (*rest, actuators.arriving().plus(actuators.drift()));
-        let (state, expected) =
-            in_flight.chain([coming]).fold((*sampled, *observer.estimate()), |(state, known), (time, mean)| {
-                pass(weighed, &state, &known, &mean, time)
-            });
+        let Memory { weighed, rest, actuators, observer, .. } = &self.memory;
+        let (mut state, mut known, mut acting) = (*sampled, *observer.estimate(), *actuators.applied());
+        for index in 0..actuators.legs() {
+            let (time, mean) = self.leg(index, &mut acting);
+            (state, known) = pass(weighed, &state, &known, &mean, time);
+        }
+        let coming = actuators.arriving().plus(actuators.drift());
+        let (state, expected) = pass(weighed, &state, &known, &coming, *rest);
         self.memory.expected = Some(expected);
         self.memory.ahead.state = state;
     }
