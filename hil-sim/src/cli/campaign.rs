@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 use hil_sim::fly::flight::Control;
 use hil_sim::report::log;
-use hil_sim::study::campaign::{self, Campaign, Identity, Replay, Row, Shard};
+use hil_sim::study::campaign::{self, Campaign, HuntError, Identity, Replay, Row, Shard};
 use hil_sim::world::Seed;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim campaign my.toml --runs 1000 --seed 7 --jobs 2 --out results
   hil-sim campaign my.toml --out results         again: goes on where it was interrupted
   hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
+  hil-sim campaign my.toml --hunt                the smallest fault that fails, and `hil-sim run out/fault-1.toml`
+  hil-sim campaign my.toml --hunt=412            the smallest part of what flight 412 met that still fails
   hil-sim campaign my.toml --table csv,parquet --out results
   hil-sim campaign my.toml --shard 1/4 --out part1    a quarter, for a cluster; see `hil-sim merge`
   hil-sim campaign my.toml --shard $SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT --out part$SLURM_ARRAY_TASK_ID
@@ -42,6 +44,15 @@ pub struct CampaignArguments {
     /// Fly this one flight again, with its full log.
     #[arg(long, value_name = "ROW", conflicts_with = "shard")]
     replay: Option<u64>,
+    /// Search for the smallest fault that fails, in place of flying all: from the nominal flight, or
+    /// from what flight ROW of the campaign met.
+    ///
+    /// Nominal is zero where a range has it, else its middle; the size of a fault is the length of
+    /// the vector of its numbers, each 1 at the end of its range. Noise, gusts, choices and the place
+    /// on the path are those of flight ROW, or 0, in every flight. Writes hunt.json and a scenario
+    /// file for each find, which `hil-sim run` flies to the same end.
+    #[arg(long, value_name = "ROW", num_args = 0..=1, require_equals = true, conflicts_with_all = ["shard", "replay"])]
+    hunt: Option<Option<u64>>,
     /// Fly the i-th of n parts only.
     #[arg(long, value_name = "i/n", value_parser = shard)]
     shard: Option<Shard>,
@@ -92,10 +103,16 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     let runs = arguments.runs.unwrap_or(campaign.runs);
-    if let Some(run) = arguments.replay {
-        if run >= runs {
-            return Err(format!("--replay {run}: the campaign's flights are 0 to {}", runs - 1).into());
+    for (option, run) in [("replay", arguments.replay), ("hunt", arguments.hunt.flatten())] {
+        if let Some(run) = run.filter(|run| *run >= runs) {
+            return Err(format!("--{option} {run}: the campaign's flights are 0 to {}", runs - 1).into());
         }
+    }
+    if let Some(from) = arguments.hunt {
+        common.tried()?;
+        return hunt(common, &campaign, &arguments.many, from);
+    }
+    if let Some(run) = arguments.replay {
         common.tried()?;
         return replay(common, &campaign, Seed { batch: arguments.many.seed, run }, &arguments.logs);
     }
@@ -161,6 +178,35 @@ fn report(
         writeln!(out, "Report: {}", page.display())?;
     }
     Ok(())
+}
+
+fn hunt(common: &Common, campaign: &Campaign, many: &Many, from: Option<u64>) -> Ended {
+    let stop = many::interrupt()?;
+    let pool = many.pool()?;
+    let seed = Seed { batch: many.seed, run: from.unwrap_or(0) };
+    let control = Control { stop: &stop, progress: &|_| {} };
+    let hunt = match pool.install(|| campaign::hunt(campaign, seed, from.is_some(), control)) {
+        Err(HuntError::Interrupted) => return Ok(many::nothing_reported()),
+        hunt => hunt?,
+    };
+    let name = |index: usize| match from {
+        None => format!("fault-{}.toml", index + 1),
+        Some(run) => format!("fault-of-{run}.toml"),
+    };
+    let path = |name: &str| common.folder().join(name);
+    let report = |name: String, text: &str| hil_sim::report::write_file(&path(&name), text.as_bytes());
+    for (index, find) in hunt.finds.iter().enumerate() {
+        report(name(index), &find.scenario)?;
+    }
+    report("hunt.json".to_owned(), &serde_json::to_string_pretty(&hunt)?)?;
+    if !common.quiet {
+        let mut out = io::stdout().lock();
+        write!(out, "{}", hunt.text(|index| path(&name(index)).display().to_string()))?;
+        if !hunt.finds.is_empty() {
+            writeln!(out, "Look at one: hil-sim run {} --unchecked", path(&name(0)).display())?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 fn replay(common: &Common, campaign: &Campaign, seed: Seed, logs: &Logs) -> Ended {

@@ -81,9 +81,9 @@ pub fn fly_on(
     let log_every = scenario.log_every();
     let plan = Plan {
         start: State::from_paper(&scenario.initial),
-        seed: Seed { batch: scenario.seed, run: 0 },
-        entry: Entry::Stated,
-        ground_p3: None,
+        seed: Seed { batch: scenario.seed, run: scenario.run },
+        entry: if scenario.take_over { Entry::Hover } else { Entry::Stated },
+        ground_p3: scenario.ground_p3,
         distance_every: 1,
         control,
     };

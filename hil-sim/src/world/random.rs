@@ -37,6 +37,8 @@ pub enum Purpose {
     Mocap = 10,
     /// What an estimator is told at its start.
     Told = 11,
+    /// Directions of a search for failures.
+    Hunt = 12,
 }
 
 /// A seeded stream of random numbers.

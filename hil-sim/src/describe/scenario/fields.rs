@@ -44,6 +44,11 @@ struct ScenarioFields {
     estimator: Option<EstimatorSpec>,
     #[serde(default)]
     seed: u64,
+    #[serde(default)]
+    run: u64,
+    #[serde(default)]
+    take_over: bool,
+    ground_p3: Option<f64>,
     limits: Option<toml::Value>,
     fence: Option<Fence>,
     #[serde(default = "ten_seconds")]
@@ -273,6 +278,9 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         timing: fields.timing,
         estimator: fields.estimator,
         seed: fields.seed,
+        run: fields.run,
+        take_over: fields.take_over,
+        ground_p3: fields.ground_p3.map(|p3| within("ground_p3", p3, -1e5..=1e5)).transpose()?,
         limits,
         fence: fields.fence,
         duration_s,

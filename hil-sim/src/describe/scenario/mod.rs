@@ -103,6 +103,12 @@ pub struct Scenario {
     pub estimator: Option<EstimatorSpec>,
     /// Of all that is random.
     pub seed: u64,
+    /// The flight's number among those of the seed.
+    pub run: u64,
+    /// The controller takes over from a hover, without a bump, in place of starting from ζ.
+    pub take_over: bool,
+    /// Where a body that comes to it has crashed, without a ground to stand on, m.
+    pub ground_p3: Option<f64>,
     /// What the vehicle may be asked to do on its path.
     pub limits: Limits,
     /// Where it stays, and what it keeps out of.

@@ -40,7 +40,7 @@ pub fn page(page: &Page<'_>, reference: &Reference) -> String {
             scenario: &outcome.scenario,
             table,
             end: outcome.flight.end,
-            ground_p3: None,
+            ground_p3: outcome.scenario.ground_p3,
         })
         .collect();
     let below = html! {

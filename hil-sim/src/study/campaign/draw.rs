@@ -1,12 +1,11 @@
-//! What differs from flight to flight: any key of the scenario, and the start.
+//! What differs from flight to flight: how any key of the scenario is drawn, and the same as numbers
+//! in ±1 about the nominal.
 
-use controller::{Matrix3, State, Vector3};
 use serde::Deserialize;
 use toml::{Table, Value};
 
 use crate::describe::formula::{Constants, Formula};
-use crate::describe::input::{Invalid, within};
-use crate::world::multibody::rotation;
+use crate::describe::input::Invalid;
 use crate::world::random::Stream;
 
 /// How a key of the scenario is drawn.
@@ -40,35 +39,118 @@ pub enum Computed {
 }
 
 impl Distribution {
-    /// A value, given the `variables` drawn before, or what is wrong with the distribution.
-    pub(super) fn draw(&self, field: &str, variables: &Constants, random: &mut Stream) -> Result<Value, Invalid> {
-        let compute = |text: &String| {
-            let formula = Formula::parse(text, variables).map_err(|error| Invalid::new(field, error))?;
-            Ok(Value::Float(formula.evaluate([0.0; 3])))
-        };
-        let numbers = |numbers: &[f64]| Value::Array(numbers.iter().map(|&number| Value::Float(number)).collect());
-        Ok(match self {
+    /// A value; none of a formula, which [`value`](Self::value) computes.
+    pub(super) fn draw(&self, field: &str, random: &mut Stream) -> Result<Option<Value>, Invalid> {
+        Ok(Some(match self {
             Self::Uniform([low, high]) => Value::Float(random.uniform(*low, *high)),
             Self::Normal([mean, deviation]) => Value::Float(mean + deviation * random.normal()),
             Self::Box(spans) => {
-                numbers(&spans.iter().map(|[low, high]| random.uniform(*low, *high)).collect::<Vec<_>>())
+                list(&spans.iter().map(|[low, high]| random.uniform(*low, *high)).collect::<Vec<_>>())
             }
             Self::Disc(radius) => loop {
                 let point = random.cube(1.0);
                 if point.x * point.x + point.y * point.y <= 1.0 {
-                    break numbers(&[radius * point.x, radius * point.y, 0.0]);
+                    break list(&[radius * point.x, radius * point.y, 0.0]);
                 }
             },
-            Self::Formula(Computed::Number(text)) => compute(text)?,
-            Self::Formula(Computed::List(texts)) => {
-                Value::Array(texts.iter().map(compute).collect::<Result<_, Invalid>>()?)
-            }
-            Self::Ball(radius) => numbers((random.ball() * *radius).as_slice()),
+            Self::Ball(radius) => list((random.ball() * *radius).as_slice()),
             Self::Choice(values) => {
                 let index = (random.unit() * values.len() as f64) as usize;
                 values.get(index).cloned().ok_or_else(|| Invalid::new(field, "nothing to choose from"))?
             }
-        })
+            Self::Formula(_) => return Ok(None),
+        }))
+    }
+
+    /// What was `drawn`, or what the formula makes of the `variables`; or what is wrong with it.
+    pub(super) fn value(&self, field: &str, drawn: Option<&Value>, variables: &Constants) -> Result<Value, Invalid> {
+        let compute = |text: &String| {
+            let formula = Formula::parse(text, variables).map_err(|error| Invalid::new(field, error))?;
+            Ok(Value::Float(formula.evaluate([0.0; 3])))
+        };
+        match self {
+            Self::Formula(Computed::Number(text)) => compute(text),
+            Self::Formula(Computed::List(texts)) => {
+                Ok(Value::Array(texts.iter().map(compute).collect::<Result<_, Invalid>>()?))
+            }
+            _ => drawn.cloned().ok_or_else(|| Invalid::new(field, "not drawn")),
+        }
+    }
+
+    /// The spans of the numbers in it: nominal at 0, the ends of what is drawn at −1 and 1. A choice
+    /// and a formula have none.
+    pub(super) fn spans(&self) -> Vec<Span> {
+        match self {
+            Self::Uniform(ends) => vec![Span::between(*ends)],
+            // Three standard deviations: one draw in 370 lies beyond.
+            Self::Normal([mean, deviation]) => {
+                vec![Span { nominal: *mean, below: 3.0 * deviation, above: 3.0 * deviation }]
+            }
+            Self::Box(spans) => spans.iter().map(|ends| Span::between(*ends)).collect(),
+            Self::Disc(radius) => vec![Span::about_zero(*radius); 2],
+            Self::Ball(radius) => vec![Span::about_zero(*radius); 3],
+            Self::Choice(_) | Self::Formula(_) => Vec::new(),
+        }
+    }
+
+    /// Whether its numbers are drawn from a disc or ball, not each by itself.
+    pub(super) fn is_round(&self) -> bool {
+        matches!(self, Self::Disc(_) | Self::Ball(_))
+    }
+
+    /// The numbers of a drawn `value`, as many as [`spans`](Self::spans).
+    pub(super) fn numbers(&self, value: &Value) -> Vec<f64> {
+        let numbers = match value {
+            Value::Array(list) => list.iter().filter_map(Value::as_float).collect(),
+            value => value.as_float().into_iter().collect::<Vec<_>>(),
+        };
+        numbers.into_iter().take(self.spans().len()).collect()
+    }
+
+    /// The value of these numbers.
+    pub(super) fn value_of(&self, numbers: &[f64]) -> Option<Value> {
+        match (self, numbers) {
+            (Self::Choice(_) | Self::Formula(_), _) => None,
+            (Self::Uniform(_) | Self::Normal(_), [number]) => Some(Value::Float(*number)),
+            (Self::Disc(_), [x, y]) => Some(list(&[*x, *y, 0.0])),
+            (_, numbers) => Some(list(numbers)),
+        }
+    }
+}
+
+fn list(numbers: &[f64]) -> Value {
+    Value::Array(numbers.iter().map(|&number| Value::Float(number)).collect())
+}
+
+/// A number's way from its nominal value to the ends of what is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Span {
+    pub nominal: f64,
+    pub below: f64,
+    pub above: f64,
+}
+
+impl Span {
+    /// Nominal is zero where it lies between the ends, else the middle.
+    fn between([low, high]: [f64; 2]) -> Self {
+        let nominal = if low <= 0.0 && 0.0 <= high { 0.0 } else { 0.5 * (low + high) };
+        Self { nominal, below: nominal - low, above: high - nominal }
+    }
+
+    pub(super) fn about_zero(radius: f64) -> Self {
+        Self { nominal: 0.0, below: radius, above: radius }
+    }
+
+    /// The number at `share` of the way, −1 to 1.
+    pub(super) fn at(&self, share: f64) -> f64 {
+        self.nominal + share * if share < 0.0 { self.below } else { self.above }
+    }
+
+    /// The share of the way at which `number` lies.
+    pub(super) fn share(&self, number: f64) -> f64 {
+        let off = number - self.nominal;
+        let way = if off < 0.0 { self.below } else { self.above };
+        if way > 0.0 { off / way } else { 0.0 }
     }
 }
 
@@ -91,87 +173,4 @@ pub(super) fn set(table: &mut Table, path: &str, value: Value) -> Result<(), Inv
     }
     *slot = value;
     Ok(())
-}
-
-/// Where and how flights start: about a random point of the path, each quantity uniform up to
-/// these.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq)]
-#[serde(deny_unknown_fields, default)]
-pub struct StartFields {
-    /// Distance of the payload from that point, m, 0 to 1000: uniform in a ball.
-    pub distance_m: f64,
-    /// Speed of the payload, m/s, 0 to 100: velocity uniform in a ball.
-    pub speed: f64,
-    /// Tilt of the body, degrees, 0 to 180, about any horizontal axis.
-    pub tilt_deg: f64,
-    /// Yaw, degrees, 0 to 180, either way.
-    pub yaw_deg: f64,
-    /// Angle of the rod from the vertical, degrees, 0 to 180, in any direction.
-    pub rod_deg: f64,
-    /// Body rate, rad/s, 0 to 100: uniform in a ball.
-    pub body_rate: f64,
-    /// Rate of the rod's direction, 1/s, 0 to 100: what lies across the rod of a vector uniform in
-    /// a ball.
-    pub rod_rate: f64,
-}
-
-/// A drawn start, and how far it is from the path's motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Start {
-    /// The state.
-    pub state: State<f64>,
-    /// Degrees.
-    pub tilt_deg: f64,
-    /// Degrees.
-    pub rod_deg: f64,
-}
-
-impl StartFields {
-    pub(super) fn check(&self) -> Result<(), Invalid> {
-        for (name, value, high) in [
-            ("distance_m", self.distance_m, 1e3),
-            ("speed", self.speed, 100.0),
-            ("tilt_deg", self.tilt_deg, 180.0),
-            ("yaw_deg", self.yaw_deg, 180.0),
-            ("rod_deg", self.rod_deg, 180.0),
-            ("body_rate", self.body_rate, 100.0),
-            ("rod_rate", self.rod_rate, 100.0),
-        ] {
-            within(&format!("start.{name}"), value, 0.0..=high)?;
-        }
-        Ok(())
-    }
-
-    /// A start about a `point` of the path.
-    pub(super) fn draw(&self, point: &Vector3<f64>, random: &mut Stream) -> Start {
-        let tilt_deg = random.uniform(0.0, self.tilt_deg);
-        let rod_deg = random.uniform(0.0, self.rod_deg);
-        let (tilt_axis, rod_axis) = (direction(random), direction(random));
-        let yaw = random.uniform(-self.yaw_deg, self.yaw_deg).to_radians();
-        let tilted = turned(&tilt_axis, tilt_deg.to_radians());
-        let attitude = tilted * turned(&Vector3::new(0.0, 0.0, 1.0), yaw);
-        let rod: Vector3<f64> = turned(&rod_axis, rod_deg.to_radians()).column(2).into();
-        let rate = random.ball() * self.rod_rate;
-        let state = State {
-            position: point + random.ball() * self.distance_m,
-            velocity: random.ball() * self.speed,
-            rod,
-            rod_rate: rate - rod * rod.dot(&rate),
-            attitude,
-            body_rate: random.ball() * self.body_rate,
-        };
-        Start { state, tilt_deg, rod_deg }
-    }
-}
-
-/// Any horizontal direction.
-fn direction(random: &mut Stream) -> Vector3<f64> {
-    let angle = random.uniform(0.0, std::f64::consts::TAU);
-    Vector3::new(libm::cos(angle), libm::sin(angle), 0.0)
-}
-
-/// The rotation by `angle` (rad) about the unit vector `axis`.
-fn turned(axis: &Vector3<f64>, angle: f64) -> Matrix3<f64> {
-    let (sin, cos) = (libm::sin(0.5 * angle), libm::cos(0.5 * angle));
-    rotation([cos, sin * axis.x, sin * axis.y, sin * axis.z])
 }

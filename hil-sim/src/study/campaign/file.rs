@@ -29,9 +29,10 @@ use controller::State;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
-use toml::Table;
+use toml::{Table, Value};
 
-use super::draw::{Distribution, Start, StartFields, set};
+use super::draw::{Distribution, set};
+use super::start::{Deviation, Start, StartFields};
 use crate::describe::formula::Constants;
 use crate::describe::input::{Invalid, read, within};
 use crate::describe::path::PathSpec;
@@ -118,6 +119,17 @@ pub struct Drawn {
     pub start: Start,
 }
 
+/// What is drawn for one flight.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Draws {
+    /// Of [`Campaign::distributions`]; none where a formula computes it.
+    pub values: Vec<Option<Value>>,
+    /// Where on the path it starts, as a share of its length.
+    pub place: f64,
+    /// How far off it.
+    pub start: Deviation,
+}
+
 impl Campaign {
     /// Reads a campaign from the text of a file.
     ///
@@ -143,37 +155,75 @@ impl Campaign {
     /// # Errors
     /// [`Invalid`] if the drawn scenario is not valid.
     pub fn draw(&self, seed: Seed) -> Result<Drawn, Invalid> {
+        let draws = self.draws(seed)?;
+        self.flight(self.table(&draws)?, &draws)
+    }
+
+    /// What `seed` draws.
+    pub(super) fn draws(&self, seed: Seed) -> Result<Draws, Invalid> {
         let mut random = seed.stream(Purpose::Draw);
+        let values = self
+            .distributions()
+            .map(|(field, distribution)| distribution.draw(&field, &mut random))
+            .collect::<Result<_, _>>()?;
+        // In this order, which is a seed's meaning.
+        let place = random.unit();
+        Ok(Draws { values, place, start: self.start.draw(&mut random) })
+    }
+
+    /// All that is drawn but for the start, with its field, in the order in which it is drawn.
+    pub(super) fn distributions(&self) -> impl Iterator<Item = (String, &Distribution)> {
+        let variables = self.variables.iter().map(|(name, distribution)| (format!("variables.{name}"), distribution));
+        variables.chain(self.draw.iter().map(|(path, distribution)| (path.clone(), distribution)))
+    }
+
+    /// How large starts are drawn.
+    pub(super) fn start(&self) -> &StartFields {
+        &self.start
+    }
+
+    /// The scenario's keys with these draws.
+    pub(super) fn table(&self, draws: &Draws) -> Result<Table, Invalid> {
         let mut table = self.scenario.clone();
         let mut variables = Constants::new();
+        let mut values = draws.values.iter().map(Option::as_ref);
         for (name, distribution) in &self.variables {
-            let value = distribution.draw(&format!("variables.{name}"), &variables, &mut random)?;
-            let number = value.as_float().ok_or_else(|| Invalid::new(format!("variables.{name}"), "not a number"))?;
+            let field = format!("variables.{name}");
+            let value = distribution.value(&field, values.next().flatten(), &variables)?;
+            let number = value.as_float().ok_or_else(|| Invalid::new(field, "not a number"))?;
             variables.insert(name.clone(), number);
         }
         for (path, distribution) in &self.draw {
-            let value = distribution.draw(path, &variables, &mut random)?;
+            let value = distribution.value(path, values.next().flatten(), &variables)?;
             set(&mut table, path, value)?;
         }
-        let mut scenario = Scenario::from_table("campaign", table)?;
-        let start = match &mut scenario.controller.law {
-            Law::Follow { path, .. } if scenario.standing => {
-                self.remember(path);
-                path.lap().map_err(|refusal| Invalid::new("scenario.path", refusal))?;
-                Start { state: State::from_paper(&scenario.initial), tilt_deg: 0.0, rod_deg: 0.0 }
-            }
-            Law::Follow { path, .. } => {
-                self.remember(path);
-                let lap = path.lap().map_err(|refusal| Invalid::new("scenario.path", refusal))?;
-                let point = lap.at(lap.length() * random.unit()).position;
-                self.start.draw(&point, &mut random)
-            }
-            Law::Track { .. } => {
-                let message = "campaigns fly the supervised law \"follow\"";
-                return Err(Invalid::new("scenario.controller.law", message));
-            }
+        Ok(table)
+    }
+
+    /// The flight of a scenario's keys, with the start of these draws where the scenario is not of a
+    /// vehicle that stands.
+    pub(super) fn flight(&self, table: Table, draws: &Draws) -> Result<Drawn, Invalid> {
+        let scenario = self.scenario(table)?;
+        let Law::Follow { path, .. } = &scenario.controller.law else {
+            let message = "campaigns fly the supervised law \"follow\"";
+            return Err(Invalid::new("scenario.controller.law", message));
+        };
+        let lap = path.lap().map_err(|refusal| Invalid::new("scenario.path", refusal))?;
+        let start = if scenario.standing {
+            Start { state: State::from_paper(&scenario.initial), tilt_deg: 0.0, rod_deg: 0.0 }
+        } else {
+            draws.start.about(&lap.at(lap.length() * draws.place).position)
         };
         Ok(Drawn { scenario, start })
+    }
+
+    /// A scenario from its keys, with a path that has been walked round.
+    pub(super) fn scenario(&self, table: Table) -> Result<Scenario, Invalid> {
+        let mut scenario = Scenario::from_table("campaign", table)?;
+        if let Law::Follow { path, .. } = &mut scenario.controller.law {
+            self.remember(path);
+        }
+        Ok(scenario)
     }
 
     /// Puts an equal path that has been walked round in the place of `path`, or walks it.

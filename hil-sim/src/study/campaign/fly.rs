@@ -139,9 +139,22 @@ pub fn fly_run(
     control: Control<'_>,
     watch: &mut dyn FnMut(&Moment<'_>),
 ) -> Result<Option<Row>, Invalid> {
-    let Drawn { scenario, start } = campaign.draw(seed)?;
+    let drawn = campaign.draw(seed)?;
+    let mut pilot = pilot(&drawn.scenario.controller, &campaign.approach)?;
+    Ok(fly_drawn(&drawn, &mut pilot, campaign.ground_p3, seed, control, watch))
+}
+
+/// Flies a flight that has been drawn, with everything else random from `seed`; `None` if it was
+/// interrupted.
+pub(super) fn fly_drawn(
+    Drawn { scenario, start }: &Drawn,
+    pilot: &mut Pilot<f32>,
+    ground_p3: Option<f64>,
+    seed: Seed,
+    control: Control<'_>,
+    watch: &mut dyn FnMut(&Moment<'_>),
+) -> Option<Row> {
     let controller = &scenario.controller;
-    let mut pilot = pilot(controller, &campaign.approach)?;
 
     // The limits as the controller has them, rounded to f32.
     let limits = controller.limits.cast::<f32>();
@@ -160,7 +173,7 @@ pub fn fly_run(
     };
     let mut over_time: Vec<f64> = Vec::with_capacity(INSTANTS);
     let (mut mode, mut fault, mut flying) = (Mode::Off, None, false);
-    let outcome = judge(&scenario, start.state, seed, campaign.ground_p3, control, &mut pilot, &mut |moment| {
+    let outcome = judge(scenario, start.state, seed, ground_p3, control, pilot, &mut |moment| {
         let Some(decision) = moment.decision else { return };
         let Decision { command, telemetry, .. } = decision;
         mode = decision.mode;
@@ -207,7 +220,7 @@ pub fn fly_run(
         }
         watch(moment);
     });
-    let Some(outcome) = outcome else { return Ok(None) };
+    let outcome = outcome?;
     let Outcome { end, dc_max_m, dc_rms_m, touchdown } = outcome;
     let is_to_land = scenario.lands();
     let is_in_place = touchdown.load_place_m.is_some_and(|distance| distance <= IN_PLACE_M);
@@ -222,7 +235,7 @@ pub fn fly_run(
     };
     over_time.resize(INSTANTS, LOST_M);
     row.dc_over_time_m = over_time.iter().map(|distance| format!("{distance:.4}")).collect::<Vec<_>>().join(";");
-    Ok(Some(Row {
+    Some(Row {
         mode: format!("{mode:?}").to_lowercase(),
         dc_max_m,
         dc_rms_m,
@@ -230,7 +243,7 @@ pub fn fly_run(
         load_touchdown_m_s: touchdown.load_m_s,
         load_place_m: touchdown.load_place_m,
         ..row
-    }))
+    })
 }
 
 impl Row {

@@ -8,19 +8,26 @@
 mod draw;
 mod file;
 mod fly;
+mod hunt;
 mod page;
 mod parquet;
 mod replay;
+mod search;
+mod space;
+mod start;
 mod statistics;
 mod store;
 mod summary;
 
-pub use draw::{Distribution, Start, StartFields};
+pub use draw::Distribution;
 pub use file::{ApproachFields, Campaign, Drawn, builtin};
 pub use fly::{Row, Verdict, fly_run, pilot};
+pub use hunt::{Find, Hunt, HuntError, hunt};
 pub use page::write;
 pub use parquet::encode as parquet;
 pub use replay::{Replay, replay};
+pub use search::Along;
+pub use start::{Start, StartFields};
 pub use store::{Identity, Shard, Store, StoreError, merge};
 pub use summary::{Summary, summarize};
 
