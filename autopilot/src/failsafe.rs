@@ -62,6 +62,15 @@ pub struct Failsafe {
     lost: [bool; 3],
 }
 
+/// What is asked for where something goes wrong, by the setting that says it.
+pub fn wanted(action: Setting, settings: &Settings) -> Option<Request> {
+    match settings.get(action) as u8 {
+        1 => Some(Request::Hold),
+        2 => Some(Request::Land),
+        _ => None,
+    }
+}
+
 impl Failsafe {
     /// A ground station's heartbeat.
     pub fn hear_station(&mut self) {
@@ -98,14 +107,7 @@ impl Failsafe {
         let now = Loss::ALL.map(|loss| self.is_lost(loss, settings));
         let before = core::mem::replace(&mut self.lost, now);
         let mut edges = self.lost.into_iter().zip(before).map(|(now, before)| now && !before);
-        Loss::ALL.map(|loss| {
-            let wanted = match settings.get(loss.action()) as u8 {
-                1 => Some(Request::Hold),
-                2 => Some(Request::Land),
-                _ => None,
-            };
-            edges.next().unwrap_or(false).then_some((loss, wanted))
-        })
+        Loss::ALL.map(|loss| edges.next().unwrap_or(false).then_some((loss, wanted(loss.action(), settings))))
     }
 
     /// The bits of what is lost.

@@ -137,6 +137,7 @@ pub fn notice(notice: Notice) -> &'static str {
         Notice::Nothing => "",
         Notice::Killed => "rotors stopped by the kill switch",
         Notice::Blind => "rotors stopped: no state for FS_BLIND_T",
+        Notice::Fence => "too near the fence: FNC_ACT",
         Notice::Lost(Loss::Station) => "ground station lost: FS_GCS_ACT",
         Notice::Lost(Loss::Stick) => "stick or radio lost: FS_RC_ACT",
         Notice::Lost(Loss::Battery) => "battery below FS_BAT_PCT: FS_BAT_ACT",

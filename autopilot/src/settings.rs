@@ -91,6 +91,31 @@ const PROGRAM: &[Entry<f64>] = &[
         (0.05, 20.0),
         "Missions: bound of the load's acceleration along the route and across it.",
     ),
+    Entry::real(
+        "FNC_MARGIN",
+        "margin",
+        "m",
+        1.0,
+        (0.0, 100.0),
+        "What a mission's load, UAV and cable keep from the fence; in flight half of it.",
+    ),
+    Entry::real(
+        "FNC_UP_MIN",
+        "low",
+        "m",
+        -1e5,
+        (-1e5, 1e5),
+        "Fence: least height above home of what is to be stayed in.",
+    ),
+    Entry::real(
+        "FNC_UP_MAX",
+        "high",
+        "m",
+        1e5,
+        (-1e5, 1e5),
+        "Fence: largest height above home of what is to be stayed in.",
+    ),
+    Entry::choice("FNC_ACT", "action", ACTIONS, 1, "What to do when the fence is not kept in flight."),
 ];
 /// The program's own, one group behind the other.
 const GROUPS: &[&[Entry<f64>]] = &[PROGRAM, params::ENTRIES];
@@ -140,6 +165,14 @@ impl Setting {
     pub const MISSION_CORNER: Self = Self::named("MIS_CORNER");
     /// `MIS_ACC`: the bound of the load's acceleration, m/s².
     pub const MISSION_ACCELERATION: Self = Self::named("MIS_ACC");
+    /// `FNC_MARGIN`: what is kept from the fence, m.
+    pub const FENCE_MARGIN: Self = Self::named("FNC_MARGIN");
+    /// `FNC_UP_MIN`: the least height of what is to be stayed in, m.
+    pub const FENCE_LOW: Self = Self::named("FNC_UP_MIN");
+    /// `FNC_UP_MAX`: its largest height, m.
+    pub const FENCE_HIGH: Self = Self::named("FNC_UP_MAX");
+    /// `FNC_ACT`: what is done where the fence is not kept.
+    pub const FENCE_ACTION: Self = Self::named("FNC_ACT");
 }
 
 impl Setting {

@@ -55,6 +55,7 @@ pub mod theory;
 
 pub use error::{Refused, SetupError};
 pub use flight::envelope::{Band, Envelope, EnvelopeParams, Standing};
+pub use flight::fence::{Edge as FenceEdge, Region as FenceRegion};
 pub use flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 pub use flight::supervisor::Supervisor;
 pub use law::approach::{Approach, ApproachLimits, Pace};

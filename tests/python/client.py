@@ -55,18 +55,26 @@ class Client:
         self.mav = dialect.MAVLink(None, srcSystem=255, srcComponent=190)
         self.mav.robust_parsing = True
         self.waiting = []
+        self.others = []
+
+    def passed_over(self, kind):
+        """The messages of a kind that were passed over since the last call."""
+        passed, self.others = self.others, []
+        return [message for message in passed if message.get_type() == kind]
 
     def send(self, message):
         self.socket.sendall(message.pack(self.mav))
 
     def receive(self, kind, accept=lambda message: True):
-        """The next message of a kind; others before it are passed over."""
-        deadline = time.monotonic() + TIMEOUT_S
+        """The next message of a kind, or of one of some; others before it are passed over."""
+        kinds = (kind,) if isinstance(kind, str) else kind
+        deadline = time.monotonic() + self.socket.gettimeout()
         while time.monotonic() < deadline:
             while self.waiting:
                 message = self.waiting.pop(0)
-                if message.get_type() == kind and accept(message):
+                if message.get_type() in kinds and accept(message):
                     return message
+                self.others.append(message)
             data = self.socket.recv(4096)
             assert data, "the target has closed the line"
             self.waiting += self.mav.parse_buffer(data) or []

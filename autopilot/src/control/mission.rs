@@ -1,12 +1,14 @@
 //! A mission under way: what its end leads to, pause and continue, speed, and the item that comes
 //! next.
 
-use controller::{Mode, Request};
+use controller::{Mode, Request, State, Uav};
 use link::Home;
+use rig::parameter;
 
-use super::Autopilot;
+use super::{Autopilot, Notice};
+use crate::failsafe::wanted;
 use crate::mission::{Flown, Item, Kind, Mission, Progress};
-use crate::settings::Settings;
+use crate::settings::{Setting, Settings};
 
 /// How a flight along a mission stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,6 +41,9 @@ pub enum MissionState {
     /// The load rests at its end.
     Complete,
 }
+
+/// Steps from one look at the fence to the next: its cost is as much as that of a step.
+const FENCE_EVERY: u8 = 9;
 
 const NO_ROUTE: &str = "no route is flown";
 
@@ -168,6 +173,28 @@ impl Autopilot {
         if self.mission.lands() && self.underway.ended_s > dwell && self.request == Request::Follow {
             self.request(Request::Land);
         }
+    }
+
+    /// Every so many steps: has load, UAV and cable come too near the fence, it does what is
+    /// configured.
+    pub(super) fn watch_fence(&mut self, state: &State<f32>, uav: Option<&Uav<f32>>, mode: Mode) {
+        if self.until_fence > 0 || !matches!(mode, Mode::Join | Mode::Follow | Mode::Hold) {
+            self.until_fence = self.until_fence.saturating_sub(1);
+            return;
+        }
+        self.until_fence = FENCE_EVERY;
+        let length = self.settings.rig().get(parameter!("VEH_ROD"));
+        let above = uav.map_or(state.position - state.rod * length, |uav| uav.position);
+        let keeps = self.mission.keeps_fence(&state.position, &above, &self.settings);
+        if self.keeps_fence && !keeps {
+            self.note(Notice::Fence);
+            if let Some(wanted) = wanted(Setting::FENCE_ACTION, &self.settings)
+                && self.request != Request::Land
+            {
+                self.request(wanted);
+            }
+        }
+        self.keeps_fence = keeps;
     }
 
     /// The item that the load is on its way to, or is at.

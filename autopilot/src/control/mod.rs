@@ -74,6 +74,9 @@ pub struct Autopilot {
     /// [`arming::PRESSED`].
     kill: bool,
     kill_pin: u8,
+    /// Steps until the fence is looked at again, and whether it was kept then.
+    until_fence: u8,
+    keeps_fence: bool,
     /// The last notice, and how many there have been.
     notice: (u32, Notice),
     last: Option<Answer>,
@@ -115,6 +118,8 @@ impl Autopilot {
             failsafe: Failsafe::default(),
             kill: false,
             kill_pin: 0,
+            until_fence: 0,
+            keeps_fence: true,
             notice: (0, Notice::Nothing),
             last: None,
             overrun: false,

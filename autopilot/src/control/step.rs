@@ -190,6 +190,9 @@ impl Autopilot {
             answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(sequence, rig, state, integral));
         }
         self.end_mission(mode);
+        if let Some(state) = good {
+            self.watch_fence(state, seen.uav(), mode);
+        }
         let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
         self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
         if is_down {

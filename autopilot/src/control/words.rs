@@ -55,6 +55,8 @@ pub enum Notice {
     Killed,
     /// Too long without a state: the rotors have stopped.
     Blind,
+    /// Load, UAV or cable came too near the fence, and the configured action is taken.
+    Fence,
     /// This is lost, and the configured action taken.
     Lost(Loss),
 }

@@ -151,7 +151,7 @@ fn near(a: &[f32; 3], b: &[f32; 3]) -> bool {
 }
 
 /// In N, m. An item that says no place on the earth is where the `last` one is.
-fn place(item: &Item, number: usize, home: Option<&Home>, last: [f32; 3]) -> Result<[f32; 3], Refusal> {
+pub(super) fn place(item: &Item, number: usize, home: Option<&Home>, last: [f32; 3]) -> Result<[f32; 3], Refusal> {
     if item.is_local() {
         return Ok([local(item.x), local(item.y), item.z]);
     }

@@ -6,17 +6,21 @@
 //!
 //! The knots are built into memory that the board lends, while not armed. Armed, the rig has them.
 
+mod fence;
 mod item;
 mod lay;
 
 pub use item::{DEGREES, Item, Kind, Refusal};
 
-use controller::{Built, Follow, Knot, Mode, Passage, Route, RouteError, RoutePace, Run, Table, build_route_passing};
+use controller::{
+    Built, Follow, Knot, Mode, Passage, Route, RouteError, RoutePace, Run, Table, Vector3, build_route_passing,
+};
 use link::Home;
 use link::dialect::MavMissionResult;
-use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError};
+use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError, parameter};
 
 use crate::settings::{Setting, Settings};
+use fence::{Fence, Keeping};
 use lay::{Course, Waypoints};
 
 /// Most items of a mission, and of a fence.
@@ -48,6 +52,8 @@ struct Lists {
     coming: Items,
     waypoints: Waypoints,
     marks: heapless::Vec<Mark, STOPS>,
+    /// The fence's regions in N.
+    regions: Fence,
 }
 
 impl Lists {
@@ -77,6 +83,7 @@ impl<const KNOTS: usize> Memory<KNOTS> {
             coming: Items::new(),
             waypoints: Waypoints::new(),
             marks: heapless::Vec::new(),
+            regions: Fence::new(),
         };
         Self { knots: [knot; KNOTS], runs: [run; STOPS], lists }
     }
@@ -257,8 +264,9 @@ impl Mission {
     /// Lays the route, if there is a mission.
     fn lay(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let Self { lists, home, laid, course, .. } = self;
-        let Lists { mission, waypoints, marks, .. } = &mut **lists.as_mut().ok_or_else(no_memory)?;
+        let Lists { mission, fence, waypoints, marks, regions, .. } = &mut **lists.as_mut().ok_or_else(no_memory)?;
         marks.clear();
+        regions.lay(fence, home.as_ref())?;
         if mission.is_empty() {
             return Ok(());
         }
@@ -289,8 +297,23 @@ impl Mission {
             RouteError::Waypoint(at, error) => Refusal::invalid(format_args!("item {}: {error}", number(at))),
             error => Refusal::invalid(format_args!("{error}")),
         })?;
-        Route::new(&*laid).map_err(|error| Refusal::invalid(format_args!("route: {error}")))?;
-        Ok(())
+        let mut route = Route::new(&*laid).map_err(|error| Refusal::invalid(format_args!("route: {error}")))?;
+        let rig = settings.rig();
+        let [length, gravity] = [parameter!("VEH_ROD"), parameter!("VEH_G")].map(|number| rig.get(number));
+        let Some((run, span, what)) = regions.breach(&mut route, length, gravity, &keeping(settings, 1.0)) else {
+            return Ok(());
+        };
+        // The leg is named by the item that it leads to.
+        let is_ahead = |mark: &&Mark| (mark.at.run, mark.at.span) > (run, span);
+        let item = marks.iter().find(is_ahead).or(marks.last()).map_or(0, |mark| mark.item);
+        Err(Refusal::invalid(format_args!("item {item}: {what} too near the fence")))
+    }
+
+    /// Whether load, UAV and cable keep half of the margin from the fence: the other half is what it
+    /// takes to stop.
+    pub(crate) fn keeps_fence(&self, load: &Vector3<f32>, uav: &Vector3<f32>, settings: &Settings) -> bool {
+        let Some(lists) = &self.lists else { return true };
+        lists.regions.keeps(&[*load, *uav], &keeping(settings, 0.5))
     }
 
     /// The rig that flies the mission.
@@ -359,6 +382,14 @@ impl Mission {
             route.begin_run(self.first);
         }
         Ok(())
+    }
+}
+
+/// What is kept from the fence, with a `share` of the margin.
+fn keeping(settings: &Settings, share: f32) -> Keeping {
+    Keeping {
+        margin: settings.get(Setting::FENCE_MARGIN) * share,
+        up: [settings.get(Setting::FENCE_LOW), settings.get(Setting::FENCE_HIGH)],
     }
 }
 

@@ -255,6 +255,21 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         self.anchor + c
     }
 
+    /// The acceleration of a load that flies the route there as it is laid, N, m/s².
+    pub fn acceleration(&self) -> Vector3<T> {
+        let Some(window) = self.window(&self.place) else { return Vector3::zeros() };
+        let (local, weights) = curve(window, &self.place);
+        let is_backward = self.is_backward;
+        let way = |knot: &Knot<T>| if is_backward { -knot.speed[1] } else { knot.speed[0] };
+        let [taylor] = weights.taylor::<6, 1>([window.each_ref().map(way)]);
+        let (first, second) = (local[1], local[2] + local[2]);
+        let per_length = T::one() / first.dot(&first).sqrt();
+        // dσ/dt = v/|c′|, and its derivative by σ.
+        let rate = taylor[0] * per_length;
+        let change = taylor[1] * per_length - rate * first.dot(&second) * (per_length * per_length);
+        second * (rate * rate) + first * (rate * change)
+    }
+
     /// By how much the tangent turns there over a span, rad.
     pub fn turn(&self) -> T {
         let [_, first, half, ..] = &self.local;

@@ -117,9 +117,9 @@ impl autopilot::Flash for NoMemory {
     }
 }
 
-/// Knots of a mission's route, 60 bytes each: two thirds of the memory that data and stack share.
+/// Knots of a mission's route, 60 bytes each: half of the memory that data and stack share.
 #[cfg(any(feature = "stm32f405", feature = "stm32h743"))]
-pub const KNOTS: usize = 1280;
+pub const KNOTS: usize = 1152;
 
 /// Resets the board when it is not fed for half a second.
 pub trait Watchdog {

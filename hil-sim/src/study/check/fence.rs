@@ -1,6 +1,6 @@
 //! Where a flight stays, and what it keeps out of: load, UAV and the cable between them.
 
-use controller::Vector3;
+use controller::{FenceEdge, FenceRegion, Vector3};
 use serde::Deserialize;
 
 use super::probe::length;
@@ -99,12 +99,10 @@ impl Fence {
             for (region, (is_inside, shape)) in
                 regions.chain(self.outside.iter().map(|region| (false, region)).enumerate())
             {
+                let shape = shape.as_flown(is_inside);
                 for &(what, way) in &ways {
-                    let distance = shape.distance(&way, is_inside);
                     // On the edge is over it.
-                    if distance > self.margin_m {
-                        continue;
-                    }
+                    let Some(distance) = shape.breach(&way, self.margin_m) else { continue };
                     let breach =
                         Breach { what, is_inside, region, distance, margin: self.margin_m, place: node.place() };
                     let same = |other: &&mut Breach| {
@@ -144,72 +142,14 @@ impl Region {
         Ok(())
     }
 
-    /// How far all of a straight way is inside, or outside, m.
-    fn distance(&self, way: &[Vector3<f64>; 2], is_inside: bool) -> f64 {
-        let [from, to] = way.map(|point| [point.x, point.y]);
-        let from_edge = match (&self.polygon, self.center, self.radius) {
-            (Some(corners), ..) => {
-                let next = corners.iter().cycle().skip(1);
-                let edges = corners.iter().zip(next).map(|(a, b)| between([from, to], [*a, *b]));
-                let least = edges.fold(f64::INFINITY, f64::min);
-                // A way that crosses the edge is at no distance from it.
-                if contains(corners, from) { least } else { -least }
-            }
-            (None, Some(center), Some(radius)) if is_inside => {
-                radius - [from, to].map(|point| size(less(point, center))).into_iter().fold(0.0, f64::max)
-            }
-            (None, Some(center), Some(radius)) => radius - to_way(center, [from, to]),
+    /// As the controller has it.
+    fn as_flown(&self, is_inside: bool) -> FenceRegion<'_, f64> {
+        let edge = match (&self.polygon, self.center, self.radius) {
+            (Some(corners), ..) => FenceEdge::Polygon(corners),
+            (None, Some(center), Some(radius)) => FenceEdge::Circle(center, radius),
             // Refused where it was read.
-            _ => f64::INFINITY,
+            _ => FenceEdge::Polygon(&[]),
         };
-        let [low, high] = self.up_m.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-        let ups = way.map(|point| -point.z);
-        let (least, most) = (ups[0].min(ups[1]), ups[0].max(ups[1]));
-        if is_inside {
-            from_edge.min(least - low).min(high - most)
-        } else {
-            (-from_edge).max(low - most).max(least - high)
-        }
+        FenceRegion { is_inside, edge, up: self.up_m.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]) }
     }
-}
-
-fn less([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
-    [a - c, b - d]
-}
-
-fn size([a, b]: [f64; 2]) -> f64 {
-    a.hypot(b)
-}
-
-fn turn([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
-    a * d - b * c
-}
-
-/// Distance of a point from a straight way.
-fn to_way(point: [f64; 2], [from, to]: [[f64; 2]; 2]) -> f64 {
-    let (chord, [x, y]) = (less(to, from), less(point, from));
-    let square = chord[0] * chord[0] + chord[1] * chord[1];
-    let along = if square > 0.0 { ((x * chord[0] + y * chord[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    size([x - chord[0] * along, y - chord[1] * along])
-}
-
-/// Distance of two straight ways, 0 where they cross.
-fn between(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> f64 {
-    let side = |[from, to]: [[f64; 2]; 2], point| turn(less(to, from), less(point, from));
-    let parted = |way: [[f64; 2]; 2], ends: [[f64; 2]; 2]| side(way, ends[0]) * side(way, ends[1]) < 0.0;
-    if parted(one, other) && parted(other, one) {
-        return 0.0;
-    }
-    let ends = [(one[0], other), (one[1], other), (other[0], one), (other[1], one)];
-    ends.into_iter().map(|(point, way)| to_way(point, way)).fold(f64::INFINITY, f64::min)
-}
-
-/// Whether a point lies within a polygon: by how many edges are to one side of it.
-fn contains(corners: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
-    let next = corners.iter().cycle().skip(1);
-    let crossed = corners
-        .iter()
-        .zip(next)
-        .filter(|([ax, ay], [bx, by])| (*ay > y) != (*by > y) && x < (bx - ax) * (y - ay) / (by - ay) + ax);
-    crossed.count() % 2 == 1
 }
