@@ -1,7 +1,9 @@
 //! The law on an estimate: the loop closes, and every case of the table can be made.
 
+use controller::{Mode, State};
 use hil_sim::describe::scenario::Scenario;
-use hil_sim::fly::flight::Control;
+use hil_sim::fly::flight::{Control, End, Entry, Plan, fly};
+use hil_sim::fly::pilot::Pilot;
 use hil_sim::study::estimate::{CASES, base, estimate};
 use hil_sim::world::Seed;
 use hil_sim::world::random::Purpose;
@@ -57,4 +59,74 @@ fn what_a_scenario_says_of_instruments_is_checked() {
     let told = text.replace("[estimator]", "[estimator]\nnoise = 1000.0");
     let error = Scenario::parse("wrong.toml", &told).unwrap_err().to_string();
     assert!(error.contains("estimator.noise"), "{error}");
+}
+
+/// The paper's vehicle on the ground with its load beside it, on an estimate.
+fn from_the_ground(duration_s: f64, requests: &str, cable: &str) -> Scenario {
+    let text = include_str!("../scenarios/estimate.toml")
+        .replace("duration_s = 60.0", &format!("duration_s = {duration_s:?}\nrequest = [{requests}]"))
+        .replace(
+            r#"initial = "steady""#,
+            "initial = { position = [0.8, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true }",
+        )
+        .replace("[environment.air]", &format!("[ground]\n[cable]\n{cable}\n[environment.air]"))
+        .replace("thrust = [3.0, 60.0]", "thrust = [1.5, 60.0]");
+    Scenario::parse("ground.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// How it ended, the modes on the way, the rod's largest error more than 3 s after the cable last
+/// began to pull (rad), and the last d_C in follow, m.
+fn flown(scenario: &Scenario, run: u64) -> (End, Vec<Mode>, f64, f64) {
+    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it can be set up");
+    let start = State::from_paper(&scenario.initial);
+    let seed = Seed { batch: 5, run };
+    let plan =
+        Plan { start, seed, entry: Entry::Hover, ground_p3: None, distance_every: 1, control: Control::alone() };
+    let (mut modes, mut taut_from_s, mut worst, mut distance) = (Vec::new(), f64::INFINITY, 0.0_f64, 0.0);
+    let end = fly(scenario, &plan, &mut pilot, &mut |moment| {
+        let Some((decision, sight)) = moment.decision.zip(moment.sight) else { return };
+        if modes.last() != Some(&decision.mode) {
+            modes.push(decision.mode);
+        }
+        let bodies = moment.body.bodies();
+        let line = bodies.position - bodies.uav_position;
+        // Within a thousandth of its length, which a load that falls off exceeds, and off the ground.
+        let is_taut = (line.norm() / scenario.vehicle.rod_length - 1.0).abs() < 1e-3 && bodies.position.z < -0.2;
+        taut_from_s = if is_taut { taut_from_s.min(moment.t_s) } else { f64::INFINITY };
+        let found = sight.estimate().expect("it has seen").state;
+        assert!(found.check().is_ok(), "{found:?}");
+        if moment.t_s > taut_from_s + 3.0 {
+            worst = worst.max((moment.state.rod - found.rod.cast::<f64>()).norm());
+        }
+        if decision.mode == Mode::Follow {
+            distance = moment.distance_m.unwrap_or(distance);
+        }
+    });
+    (end, modes, worst, distance)
+}
+
+#[test]
+fn it_flies_from_the_ground_to_the_ground_and_knows_the_rod_within_three_seconds() {
+    let requests = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "follow" }, { at_s = 50.0, do = "land" }"#;
+    let scenario = from_the_ground(100.0, requests, "");
+    for run in 0..3 {
+        let (end, modes, worst, distance) = flown(&scenario, run);
+        let path = [Mode::Idle, Mode::TakeOff, Mode::Hold, Mode::Join, Mode::Follow, Mode::Land, Mode::Off];
+        assert_eq!(modes, path, "{run}");
+        assert!(matches!(end, End::Landed(_)), "{run}: {end:?}");
+        assert!(worst < 2.0_f64.to_radians(), "{run}: {} degrees", worst.to_degrees());
+        assert!(distance < 0.1, "{run}: {distance} m");
+    }
+}
+
+#[test]
+fn a_load_that_falls_off_is_landed_without() {
+    let requests = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "follow" }, { at_s = 55.0, do = "land" }"#;
+    let scenario = from_the_ground(110.0, requests, "hooked = { at_s = 0.0, for_s = 50.0 }");
+    for run in 0..3 {
+        let (end, modes, worst, _) = flown(&scenario, run);
+        assert_eq!(modes[4..], [Mode::Follow, Mode::Hold, Mode::Land, Mode::Off], "{run}: {modes:?}");
+        assert!(matches!(end, End::Landed(_)), "{run}: {end:?}");
+        assert!(worst < 2.0_f64.to_radians(), "{run}: {} degrees", worst.to_degrees());
+    }
 }

@@ -216,10 +216,16 @@ pub fn fly(
                 Entry::Hover => pilot.take_over(&read.state, &hover),
             }
         }
-        let read = Reading { comes: !(has_begun && world.misses()), ..read };
+        let read = Reading {
+            comes: !(has_begun && world.misses()),
+            // Whether it stands or flies, the first reading says.
+            sees_load: read.sees_load || !has_begun,
+            ..read
+        };
+        let allowed = sight.as_ref().map_or(request, |sight| sight.allows(request));
         has_begun = true;
         // A controller counts its periods.
-        let Some(decision) = pilot.step(&read, request, step as f64 * period) else {
+        let Some(decision) = pilot.step(&read, allowed, step as f64 * period) else {
             end = End::Unanswered(t_s);
             break;
         };

@@ -131,7 +131,7 @@ impl<T: Real> Pilot<T> {
         let state: State<T> = read.state.cast();
         let uav = read.uav.as_ref().map(Uav::cast);
         let specific_force = read.specific_force.map(|force| force.map(T::lit));
-        let all = Measured { state: Some(&state), uav: uav.as_ref(), specific_force };
+        let all = Measured { state: read.sees_load.then_some(&state), uav: uav.as_ref(), specific_force };
         let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
         let body_rate = measured.body_rate();

@@ -1,9 +1,10 @@
 //! What a law sees through an estimator: instruments, navigation, payload filter, all in the
 //! flight's own arithmetic.
 
-use controller::{Command, Matrix3, State, Uav, Vector3};
+use controller::{Command, Matrix3, Request, State, Uav, Vector3};
 use estimator::{
-    Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload, PayloadParams,
+    Cable, Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload,
+    PayloadParams, Validity,
 };
 use std::collections::VecDeque;
 
@@ -25,6 +26,8 @@ pub struct Sight {
     rotors: RotorModel,
     mocap: Option<(f64, f64)>,
     estimate: Option<Estimate<f32>>,
+    /// The rod has been known since it was last lost.
+    has_found: bool,
     specific_force: Vector3<f64>,
 }
 
@@ -109,13 +112,15 @@ impl Sight {
             noise: spec.payload_noise(),
             ..PayloadParams::of(&scenario.controller.vehicle.cast(), period as f32)
         };
+        let payload = Payload::new(payload)?;
         Ok(Self {
             instruments: InstrumentModel::new(sensors, period, seed),
             navigation: Navigation::new(navigation, &motion, [(1.5 * deviation) as f32, 0.1])?,
-            payload: Payload::new(payload)?,
+            payload: if scenario.standing { payload.with_slack_cable() } else { payload },
             rotors: RotorModel::new(scenario, hover),
             mocap: sensors.mocap.map(|mocap| (mocap.noise * TRUST, mocap.attitude_noise * TRUST)),
             estimate: None,
+            has_found: false,
             specific_force: Vector3::zeros(),
         })
     }
@@ -144,13 +149,22 @@ impl Sight {
         if let Some(pose) = &readings.pose {
             self.capture(pose);
         }
-        self.estimate = Some(estimate);
+        // On a rod the flight has begun, and there is no navigation beside the state to hold by.
         let apart = matches!(world.body(), Body::Cable(_));
+        self.has_found = match estimate.health.validity {
+            _ if !apart => true,
+            Validity::Valid => true,
+            // A wrong noise figure makes no rod unknown.
+            Validity::Inconsistent => self.has_found,
+            Validity::Converging | Validity::Blind | Validity::Slack => false,
+        };
+        self.estimate = Some(estimate);
         let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
         let uav = Uav { position, velocity, attitude, body_rate };
         Reading {
             comes: true,
             state: estimate.state.cast(),
+            sees_load: !apart || estimate.cable == Cable::Taut,
             uav: apart.then(|| uav.cast()),
             specific_force: apart.then(|| specific_force.map(f64::from)),
         }
@@ -170,6 +184,13 @@ impl Sight {
         if let Some(load) = &pose.load {
             self.payload.observe(&LoadMeasurement::Position(single(load), deviation), pose.age as f32);
         }
+    }
+
+    /// What may be asked for of what is `wanted`: to follow only once the rod is known, and to hold
+    /// until then.
+    #[must_use]
+    pub fn allows(&self, wanted: Request) -> Request {
+        if wanted == Request::Follow && !self.has_found { Request::Hold } else { wanted }
     }
 
     /// The last estimate.

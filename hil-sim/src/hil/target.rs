@@ -446,8 +446,8 @@ impl Answers for Target {
     }
 
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
-        let Reading { comes, state, uav, specific_force } = read;
-        let all = Measured { state: Some(state), uav: uav.as_ref(), specific_force: *specific_force };
+        let Reading { comes, state, sees_load, uav, specific_force } = read;
+        let all = Measured { state: sees_load.then_some(state), uav: uav.as_ref(), specific_force: *specific_force };
         let measured = if *comes { all } else { None.into() };
         let answer = self.fly(&measured, request, t_s);
         answer.map_err(|error| self.failure = Some(error)).ok()

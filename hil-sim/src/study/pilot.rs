@@ -81,6 +81,7 @@ impl Controller {
         let reading = Reading {
             comes: true,
             state: bodies.state(),
+            sees_load: true,
             uav: Some(Uav { position, velocity, attitude, body_rate }),
             specific_force: seen.specific_force.map(Vector3::from),
         };

@@ -221,7 +221,7 @@ impl World {
             let attitude = self.body.bodies().attitude;
             self.sensors.read_force(self.t_s, &attitude.tr_mul(&acceleration))
         });
-        Reading { comes: true, state, uav, specific_force }
+        Reading { comes: true, state, sees_load: true, uav, specific_force }
     }
 
     /// Whether no state comes to the controller in this period. Once a period, after the first.

@@ -57,6 +57,8 @@ pub struct Reading {
     pub comes: bool,
     /// Load, rod and UAV.
     pub state: State<f64>,
+    /// Whether the load is seen; to an estimator it is not where the cable is slack.
+    pub sees_load: bool,
     /// The UAV as its own navigation has it, where it does.
     pub uav: Option<Uav<f64>>,
     /// Specific force of the UAV's centre of mass in body axes, m/s², where it is measured.
@@ -66,7 +68,7 @@ pub struct Reading {
 impl From<State<f64>> for Reading {
     /// The state and nothing else.
     fn from(state: State<f64>) -> Self {
-        Self { comes: true, state, uav: None, specific_force: None }
+        Self { comes: true, state, sees_load: true, uav: None, specific_force: None }
     }
 }
 
