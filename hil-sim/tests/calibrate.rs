@@ -4,7 +4,7 @@ use controller::State;
 use hil_sim::describe::scenario::Scenario;
 use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::judge::judge;
-use hil_sim::report::log::{Format, Record, Table, write};
+use hil_sim::report::log::{Format, ReadError, Record, Table, write};
 use hil_sim::study::calibrate::{Found, Known, LogError, Sample, calibrate, read};
 use hil_sim::study::campaign::{self, ApproachFields};
 use hil_sim::world::Seed;
@@ -54,8 +54,22 @@ fn log(scenario: &Scenario, rod: f64) -> Vec<Sample> {
     assert_eq!(outcome.unwrap().end, End::Complete, "{}", scenario.name);
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("calibrate");
     std::fs::create_dir_all(&folder).unwrap();
-    write(&folder, &Table::new(&scenario.name, "", &records), &[Format::Csv]).unwrap();
-    read(&std::fs::read_to_string(folder.join(format!("{}.csv", scenario.name))).unwrap()).unwrap()
+    write(&folder, &Table::new(&scenario.name, "", &records), &[Format::Csv, Format::Ulog]).unwrap();
+    let [csv, ulog] = ["csv", "ulg"]
+        .map(|ending| read(&std::fs::read(folder.join(format!("{}.{ending}", scenario.name))).unwrap()).unwrap());
+    assert_eq!(csv.len(), ulog.len());
+    for (a, b) in csv.iter().zip(ulog) {
+        // ULog counts microseconds.
+        assert!((a.t_s - b.t_s).abs() < 0.6e-6, "{} and {} s", a.t_s, b.t_s);
+        // CSV has the shortest digits of a single: the same numbers once they are one.
+        let single = |s: &Sample| {
+            [s.specific_force, s.uav_position, s.uav_velocity, s.position, s.velocity].map(|v| v.map(|x| x as f32))
+        };
+        assert_eq!((single(a), a.thrust as f32), (single(&b), b.thrust as f32));
+        // Of a quaternion's four singles.
+        assert!((a.attitude - b.attitude).amax() < 4.0 * f64::from(f32::EPSILON), "{} s", a.t_s);
+    }
+    csv
 }
 
 const KNOWN: Known = Known { uav_mass: 2.5, payload_mass: 0.5, gravity: 9.81, density: 1.225, imu_period_s: 0.002 };
@@ -123,7 +137,8 @@ fn what_a_log_cannot_tell_is_said() {
 
 #[test]
 fn a_log_without_its_columns_is_refused_by_name() {
-    assert_eq!(read("t_s,att_w\n0,1\n"), Err(LogError::Missing("att_x")));
-    let error = LogError::Missing("f1").to_string();
+    let missing = |name| LogError::Read(ReadError::Missing(name));
+    assert_eq!(read(b"t_s,att_w\n0,1\n"), Err(missing("att_x")));
+    let error = missing("f1").to_string();
     assert!(error.contains("`f1`"), "{error}");
 }

@@ -13,14 +13,14 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim run slow.toml fast.toml                     logs in out/, with f1 f2 f3 where [estimator] flies
   hil-sim calibrate out/slow.csv out/fast.csv --uav-mass 2.5 --payload-mass 0.5
 
-Columns, in SI units, n3 down: t_s, att_w … att_z, f1 … f3 (accelerometer, body axes), thrust (commanded), uav_p1 … uav_p3,
+Columns of CSV, or fields of ULog (PX4's for the UAV), in SI units, n3 down: t_s, att_w … att_z, f1 … f3 (accelerometer, body axes), thrust (commanded), uav_p1 … uav_p3,
 uav_v1 … uav_v3, and of the load p1 … p3, v1 … v3, as motion capture or an estimator has them. Fly in calm air, at two
 speeds or more, with turns of the yaw.";
 
 /// What is known, and the logs.
 #[derive(Args)]
 pub struct CalibrateArguments {
-    /// CSV logs of one vehicle in one wind.
+    /// CSV or ULog logs of one vehicle in one wind.
     #[arg(required = true, value_name = "LOG")]
     files: Vec<PathBuf>,
     /// Mass of the UAV, kg, 0.01 to 1000.
@@ -56,8 +56,8 @@ pub fn calibrate(common: &Common, arguments: &CalibrateArguments) -> Ended {
     let mut logs = Vec::new();
     for file in files {
         let name = file.display();
-        let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
-        logs.push(calibrate::read(&text).map_err(|error| format!("{name}: {error}"))?);
+        let bytes = std::fs::read(file).map_err(|error| format!("{name}: {error}"))?;
+        logs.push(calibrate::read(&bytes).map_err(|error| format!("{name}: {error}"))?);
     }
     let known = Known {
         uav_mass: *uav_mass,

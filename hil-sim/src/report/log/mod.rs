@@ -3,10 +3,12 @@
 mod csv;
 mod mcap;
 mod quantities;
+mod read;
 mod record;
 mod table;
 mod ulog;
 
+pub use read::{ReadError, read};
 pub use record::Record;
 pub use table::{Column, Table, Values};
 

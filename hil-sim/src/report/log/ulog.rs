@@ -6,9 +6,12 @@ use super::table::{Column, Table, Values};
 /// The declaration of a field of PX4's, and the columns that make it.
 type Field = (&'static str, &'static [&'static str]);
 
+/// How a file begins, before its version.
+pub const MAGIC: [u8; 7] = *b"ULog\x01\x12\x35";
+
 /// PX4's topics and fields for columns of this table: both are NED, SI, and body axes
 /// forward-right-down.
-const PX4: [(&str, &[Field]); 3] = [
+pub const PX4: [(&str, &[Field]); 4] = [
     (
         "vehicle_local_position",
         &[
@@ -22,6 +25,7 @@ const PX4: [(&str, &[Field]); 3] = [
     ),
     ("vehicle_attitude", &[("float[4] q", &["att_w", "att_x", "att_y", "att_z"])]),
     ("vehicle_angular_velocity", &[("float[3] xyz", &["omega1", "omega2", "omega3"])]),
+    ("vehicle_acceleration", &[("float[3] xyz", &["f1", "f2", "f3"])]),
 ];
 
 /// The log as ULog.
@@ -143,7 +147,8 @@ struct Writer(Vec<u8>);
 impl Writer {
     /// The header: magic, version 1, and that the log begins at time 0.
     fn new() -> Self {
-        let mut bytes = b"ULog\x01\x12\x35\x01".to_vec();
+        let mut bytes = MAGIC.to_vec();
+        bytes.push(1);
         bytes.extend(0_u64.to_le_bytes());
         Self(bytes)
     }
