@@ -3,9 +3,9 @@
 //! equation with the library's model of a taut rod.
 
 use controller::{
-    ActuatorLimits, ApproachLimits, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains, Matrix3,
-    Measured, Mode, ObserverParams, Path, Policy, Request, Sampling, State, Supervisor, Uav, Vector3, Vehicle,
-    VehicleParams,
+    ActuatorLimits, ApproachLimits, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains, Margin,
+    Matrix3, Measured, Mode, ObserverParams, Path, Policy, Request, Sampling, State, Supervisor, Uav, Vector3,
+    Vehicle, VehicleParams,
 };
 
 type V = Vector3<f64>;
@@ -350,6 +350,24 @@ fn a_load_that_is_measured_wrong_for_two_seconds_costs_no_height() {
         assert!(lost < 1.0, "{name}: {lost} m lost");
         assert_eq!(last, Some(Mode::Follow), "{name}");
     }
+}
+
+/// Beside its load on a slack cable, a vehicle without navigation of its own does not know where it
+/// is: it stays on the ground and says what is wrong; with navigation it takes off.
+#[test]
+fn a_take_off_without_navigation_is_refused_in_words() {
+    let mut flight = flight(PAPER, V::new(0.0, 0.0, -0.15), V::new(0.8, 0.0, 0.0), 0.0);
+    flight.has_navigation = false;
+    for request in [Request::Idle, Request::Hold, Request::Follow] {
+        for _ in 0..1000 {
+            let output = flight.step(request);
+            assert_eq!(output.mode, Mode::Idle, "{request:?}");
+            let fault = (request != Request::Idle).then_some(Fault::Margin(Margin::RodAngle));
+            assert_eq!(output.fault, fault, "{request:?}");
+        }
+    }
+    flight.has_navigation = true;
+    assert_eq!(flight.step(Request::Hold).mode, Mode::TakeOff);
 }
 
 /// A cable that is told too long seems slack: it holds, and says why. Told a little too short or too

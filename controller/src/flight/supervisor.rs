@@ -67,6 +67,8 @@ const CALM_TILT: f64 = 0.95;
 /// | Fault   | Off   | Hold   | Hold     | Hold    | Hold   |       |              | Hold          |              | Hold        |        | Hold        | Fault    | Fault         |
 ///
 /// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold.
+/// Without it a rod beyond the envelope, as that of a vehicle which stands beside its load, leaves
+/// it idle, with the margin as its fault.
 /// Hold, landing and take-off fly the UAV itself and take the cable for a pull; without that
 /// navigation they take it for taut. A landing sets the load down, goes aside, and sets the UAV down
 /// beside it; without that navigation it keeps the cable taut and flies the UAV around the load, an
@@ -449,6 +451,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             (Mode::Idle, Request::Off | Request::Idle) => Mode::Idle,
             (Mode::Idle, Request::Land) => Mode::Off,
             (Mode::Idle, _) if uav.is_some() => Mode::TakeOff,
+            (Mode::Idle, _) if state.is_some_and(|state| !self.may_lift(state)) => Mode::Idle,
             (Mode::Idle, _) => Mode::Hold,
             (Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
             (Mode::TakeOff, Request::Follow | Request::Hold) if !self.has_risen(uav) => Mode::TakeOff,
@@ -484,6 +487,19 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
         self.mode = mode;
         self.from = uav.position.z;
+    }
+
+    /// Without the UAV's own navigation nothing rises but what hangs by a rod that can be flown: a
+    /// vehicle that stands beside its load is told why it stays there.
+    #[cold]
+    fn may_lift(&mut self, state: &State<T>) -> bool {
+        let vehicle = self.sampler.vehicle();
+        let margins = Margins::of_motion(vehicle, state, vehicle.hover_thrust());
+        let standing = self.envelope.assess(&margins, T::one());
+        if let Standing::Beyond(margin) = standing {
+            self.fault = Some(Fault::Margin(margin));
+        }
+        !matches!(standing, Standing::Beyond(_))
     }
 
     /// Whether a take-off is over.
