@@ -104,6 +104,12 @@ fn it_lands_softly_whatever_the_cable_the_ground_and_the_sensors_do() {
         "sensors = { uav_position = { noise = 0.05 }, uav_velocity = { noise = 0.1 } }",
         "sensors = { accelerometer = false }",
         "sensors = { position = { nan = { at_s = 38.0, for_s = 60.0 } } }",
+        // Load, rod, the UAV itself and everything, lost or wrong for a while on the way down.
+        "sensors = { position = { drop_out = { at_s = 42.0, for_s = 2.0 } } }",
+        "sensors = { position = { freeze = { at_s = 42.0, for_s = 2.0 } }, velocity = { freeze = { at_s = 42.0, for_s = 2.0 } } }",
+        "sensors = { rod = { nan = { at_s = 46.0, for_s = 60.0 } } }",
+        "sensors = { uav_position = { nan = { at_s = 42.0, for_s = 2.0 } } }",
+        "sensors = { attitude = { nan = { at_s = 42.0, for_s = 0.3 } } }",
         "actuators = { thrust_scale = 0.85 }",
         "environment = { uav_force = [1.0, 0.0, -2.0] }",
     ] {
@@ -111,6 +117,61 @@ fn it_lands_softly_whatever_the_cable_the_ground_and_the_sensors_do() {
         let (end, modes) = flown(&scenario(WHOLE, more), &mut |moment| touchdown = Some(*moment.touchdown));
         assert!(matches!(end, End::Landed(_)), "{more}: {end:?}, {modes:?}");
         assert!(touchdown.and_then(|t| t.uav_m_s).is_some_and(|speed| speed < SOFT), "{more}: {touchdown:?}");
+    }
+}
+
+/// In wind, whatever the payload weighs against what is told, and whatever the rotors give of what
+/// they are told.
+#[test]
+fn it_lands_softly_in_wind_with_wrong_masses_and_rotors() {
+    let air = "{ wind = [3.0, 4.0, 0.0], gusts = { speed_at_6m = 5.0 } }";
+    for (told, thrust) in [(0.5, 1.0), (0.75, 0.85), (0.25, 0.85), (0.25, 1.15), (0.75, 1.15)] {
+        let more = format!("environment = {{ air = {air} }}\n actuators = {{ thrust_scale = {thrust:?} }}");
+        let mut scenario = scenario(WHOLE, &more);
+        scenario.controller.vehicle.payload_mass = told;
+        let mut touchdown = None;
+        let (end, modes) = flown(&scenario, &mut |moment| touchdown = Some(*moment.touchdown));
+        assert!(matches!(end, End::Landed(_)), "told {told} kg, thrust {thrust}: {end:?}, {modes:?}");
+        let touchdown = touchdown.expect("it was watched");
+        println!("told {told} kg, thrust {thrust}: {touchdown:?}");
+        for speed in [touchdown.uav_m_s, touchdown.load_m_s] {
+            assert!(speed.is_some_and(|speed| speed < SOFT), "told {told} kg, thrust {thrust}: {touchdown:?}");
+        }
+    }
+}
+
+/// A sensor that is lost or wrong for two seconds on the path costs less than a metre of height, m,
+/// and then the path is followed again.
+#[test]
+fn two_seconds_without_a_measurement_cost_no_height() {
+    const HEIGHT: f64 = 1.0;
+    let follow = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "hold" }, { at_s = 12.0, do = "follow" }"#;
+    for channels in [&["position"] as &[_], &["position", "velocity"], &["rod"], &["rod", "rod_rate"], &["rod_rate"]]
+    {
+        for wrong in ["nan", "drop_out", "freeze"] {
+            let tables = channels
+                .iter()
+                .map(|channel| format!("{channel} = {{ {wrong} = {{ at_s = 30.0, for_s = 2.0 }} }}"))
+                .collect::<Vec<_>>();
+            let scenario = scenario(follow, &format!("sensors = {{ {} }}", tables.join(", ")));
+            let length = scenario.vehicle.rod_length;
+            // p3 of the UAV and the mode, when all was well.
+            let (mut before, mut lost, mut last) = (None, 0.0_f64, Mode::Off);
+            flown(&scenario, &mut |moment| {
+                let p3 = moment.state.position.z - length * moment.state.rod.z;
+                if let Some(decision) = moment.decision {
+                    last = decision.mode;
+                    if moment.t_s < 30.0 {
+                        before = Some((p3, last));
+                    }
+                    lost = before.map_or(lost, |(before, _)| lost.max(p3 - before));
+                }
+            });
+            println!("{channels:?} {wrong}: {lost:.2} m lost");
+            assert!(before.is_some_and(|(_, mode)| mode == Mode::Follow), "{channels:?} {wrong}: {before:?}");
+            assert!(lost < HEIGHT, "{channels:?} {wrong}: {lost} m lost");
+            assert_eq!(last, Mode::Follow, "{channels:?} {wrong}");
+        }
     }
 }
 
