@@ -117,9 +117,10 @@ impl autopilot::Flash for NoMemory {
     }
 }
 
-/// Knots of a mission's route, 60 bytes each: half of the memory that data and stack share.
+/// Knots of a mission's route, 60 bytes each: a third of the memory that data and stack share, so
+/// that the stack has 50 KB for making a controller and laying a route.
 #[cfg(any(feature = "stm32f405", feature = "stm32h743"))]
-pub const KNOTS: usize = 1152;
+pub const KNOTS: usize = 640;
 
 /// Resets the board when it is not fed for half a second.
 pub trait Watchdog {
