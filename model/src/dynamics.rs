@@ -66,12 +66,12 @@ impl<'a, T: Real> Model<'a, T> {
         Self { vehicle, state, along: b3.dot(&state.rod), turning: state.rod_rate.dot(&state.rod_rate) }
     }
 
-    /// v̇ under `thrust` (N) and d, and its change with a newton more.
+    /// v̇ under `thrust` (N) and d, and its change with a newton more, which is along the rod.
     #[inline]
-    pub fn payload(&self, thrust: T, d: &Vector3<T>) -> (Vector3<T>, Vector3<T>) {
+    pub fn payload(&self, thrust: T, d: &Vector3<T>) -> (Vector3<T>, T) {
         let (vehicle, q) = (self.vehicle, &self.state.rod);
-        let per_newton = q * -(self.along * vehicle.per_total_mass());
-        let mut acceleration = d - q * (self.turning * vehicle.inverse_coupling()) + per_newton * thrust;
+        let per_newton = -(self.along * vehicle.per_total_mass());
+        let mut acceleration = d + q * (per_newton * thrust - self.turning * vehicle.inverse_coupling());
         acceleration.z += vehicle.params().gravity;
         (acceleration, per_newton)
     }
@@ -121,8 +121,8 @@ pub fn advance<T: Real>(
     acceleration: &Vector3<T>,
     dt: T,
 ) -> (Vector3<T>, Vector3<T>) {
-    let change = acceleration * dt;
-    (position + (rate + change * T::lit(0.5)) * dt, rate + change)
+    let mean = rate + acceleration * (dt * T::lit(0.5));
+    (position + mean * dt, rate + acceleration * dt)
 }
 
 /// A rod's rate without what would make it longer.

@@ -36,9 +36,9 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
 /// The limits that the pilot sets, and then four rotors, which have the last word.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Actuators<T> {
+    /// Within what the rotors have at most.
     limits: ActuatorLimits<T>,
     rotors: Rotors<T, 4>,
-    per_max_speed: T,
 }
 
 impl<T: Real> Actuators<T> {
@@ -47,7 +47,7 @@ impl<T: Real> Actuators<T> {
     /// # Errors
     /// A limit or a rotor's number is out of range, or the rotors have no room for torque.
     pub fn new(parameters: &Parameters<T>) -> Result<Self, OutOfRange<T>> {
-        let limits = ActuatorLimits {
+        let mut limits = ActuatorLimits {
             min_thrust: parameters.get(parameter!("LIM_T_MIN")),
             max_thrust: parameters.get(parameter!("LIM_T_MAX")),
             max_torque: parameters.run(run!("LIM_TAU_1" to "LIM_TAU_3")),
@@ -65,7 +65,11 @@ impl<T: Real> Actuators<T> {
         let places =
             [place(arm, arm, true), place(-arm, -arm, true), place(arm, -arm, false), place(-arm, arm, false)];
         let rotors = Rotors::new(rotor, &places).map_err(parameters.naming(&["ROT_"]))?;
-        Ok(Self { limits, rotors, per_max_speed: T::one() / rotor.max_speed })
+        let [_, largest_torque @ ..] = *rotors.largest();
+        for (limit, largest) in limits.max_torque.iter_mut().zip(largest_torque) {
+            *limit = limit.min(largest);
+        }
+        Ok(Self { limits, rotors })
     }
 
     /// Thrust, and torque about b1, b2 and b3, as shares of what all rotors together could give of
@@ -84,8 +88,7 @@ impl<T: Real> Actuators<T> {
         if *applied == Command::zero() {
             return [T::zero(); 4];
         }
-        // Rounding alone can lead outside.
-        self.rotors.speeds(applied).map(|speed| (speed * self.per_max_speed).min(T::one()))
+        self.rotors.duties(applied)
     }
 }
 
@@ -97,7 +100,7 @@ impl<T: Real> Actuation<T> for Actuators<T> {
 
     #[inline]
     fn apply(&self, command: &Command<T>) -> Command<T> {
-        self.rotors.apply(&self.limits.apply(command))
+        self.rotors.apply_bounded(&self.limits.apply(command))
     }
 
     fn least_thrust(&self) -> T {

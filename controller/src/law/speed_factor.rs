@@ -63,6 +63,8 @@ pub(crate) struct SpeedFactor<T> {
     /// Of each lag's output from what is wished; r is the last one's.
     deviations: [T; LAGS],
     is_settled: bool,
+    /// Settled where v_d itself is flown.
+    is_one: bool,
     /// Over a control period, and as far as the law looks ahead.
     period: Decay<T>,
     horizon: Decay<T>,
@@ -78,6 +80,7 @@ impl<T: Real> SpeedFactor<T> {
             sign: T::one(),
             deviations: [T::zero(); LAGS],
             is_settled: true,
+            is_one: true,
             period: Decay::over(period),
             horizon: Decay::over(horizon),
         }
@@ -103,8 +106,13 @@ impl<T: Real> SpeedFactor<T> {
         }
         let size = factor.abs().min(T::lit(MOST));
         let turns = size > T::zero() && (factor < T::zero()) != self.is_backward;
-        (self.after, self.is_settled) = (turns.then_some(size), false);
+        self.after = turns.then_some(size);
+        self.unsettle();
         self.change_to(if turns { T::zero() } else { size });
+    }
+
+    fn unsettle(&mut self) {
+        (self.is_settled, self.is_one) = (false, false);
     }
 
     fn change_to(&mut self, wished: T) {
@@ -132,7 +140,7 @@ impl<T: Real> SpeedFactor<T> {
     /// Begins at 0, for a payload at rest.
     pub(crate) fn restart(&mut self) {
         self.deviations = [-self.wished; LAGS];
-        self.is_settled = false;
+        self.unsettle();
     }
 
     /// A period on. Where the way turns in it, whether it is backward then, and
@@ -150,7 +158,7 @@ impl<T: Real> SpeedFactor<T> {
         }
         if self.deviations.iter().all(|deviation| deviation.abs() < T::lit(SETTLED)) {
             self.deviations = [T::zero(); LAGS];
-            self.is_settled = true;
+            (self.is_settled, self.is_one) = (true, self.wished * self.sign == T::one());
         }
         None
     }
@@ -158,7 +166,7 @@ impl<T: Real> SpeedFactor<T> {
     /// Brings the factor at the horizon into the outputs.
     #[inline(always)]
     pub(crate) fn apply(&self, outputs: &mut Outputs<T>) {
-        if !self.is_settled || self.wished * self.sign != T::one() {
+        if !self.is_one {
             self.scale(outputs);
         }
     }

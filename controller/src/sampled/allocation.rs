@@ -133,6 +133,7 @@ pub struct Rotors<T, const N: usize> {
     /// overflows.
     bounds: [T; 4],
     per_thrust_coefficient: T,
+    per_largest_force: T,
 }
 
 /// Rows of unit length span a volume less than this only when, to f32's rounding, one of them
@@ -198,6 +199,7 @@ impl<T: Real, const N: usize> Rotors<T, N> {
             largest_force,
             bounds,
             per_thrust_coefficient: T::one() / rotor.thrust_coefficient,
+            per_largest_force: T::one() / largest_force,
         })
     }
 
@@ -215,7 +217,7 @@ impl<T: Real, const N: usize> Rotors<T, N> {
     /// The forces for `command`, and what they apply.
     #[inline(always)]
     fn share_out(&self, command: &Command<T>) -> ([T; N], Command<T>) {
-        let (zero, one) = (T::zero(), T::one());
+        let zero = T::zero();
         let [_, b1, b2, b3] = self.bounds;
         let cut = |x: T, bound: T| {
             if x.abs() <= bound {
@@ -228,8 +230,17 @@ impl<T: Real, const N: usize> Rotors<T, N> {
                 zero
             }
         };
+        let Command { thrust, torque } = *command;
+        let torque = Vector3::new(cut(torque.x, b1), cut(torque.y, b2), cut(torque.z, b3));
+        self.share_out_bounded(&Command { thrust, torque })
+    }
+
+    /// The same of a torque within the [largest](Self::largest).
+    #[inline(always)]
+    fn share_out_bounded(&self, command: &Command<T>) -> ([T; N], Command<T>) {
+        let (zero, one) = (T::zero(), T::one());
         let Command { thrust, torque } = command;
-        let (roll, pitch, yaw) = (cut(torque.x, b1), cut(torque.y, b2), cut(torque.z, b3));
+        let (roll, pitch, yaw) = (torque.x, torque.y, torque.z);
 
         // Roll and pitch as far as there is room.
         let mut forces = self.inverse.map(|[_, r, p, _]| r * roll + p * pitch);
@@ -268,6 +279,14 @@ impl<T: Real, const N: usize> Rotors<T, N> {
         (forces, applied)
     }
 
+    /// What is [applied](Actuation::apply) of a command whose torque is within the
+    /// [largest](Self::largest), as limits may have left it.
+    // Without the forces themselves, of which half of the cost is.
+    #[inline(never)]
+    pub fn apply_bounded(&self, command: &Command<T>) -> Command<T> {
+        self.share_out_bounded(command).1
+    }
+
     /// Thrust, N, and torque about b1, b2 and b3, N·m, that no command for these rotors exceeds:
     /// each rotor's largest force with its lever, added up.
     #[must_use]
@@ -279,10 +298,23 @@ impl<T: Real, const N: usize> Rotors<T, N> {
     /// [`allocate`](Self::allocate) finds for it, without looking for what has to be given up.
     #[inline]
     pub fn speeds(&self, applied: &Command<T>) -> [T; N] {
-        let Command { thrust, torque } = applied;
+        self.roots(applied, self.per_thrust_coefficient)
+    }
+
+    /// The same as shares of the largest speed, up to 1.
+    #[inline]
+    pub fn duties(&self, applied: &Command<T>) -> [T; N] {
+        self.roots(applied, self.per_largest_force)
+    }
+
+    /// The root of `scale` times each force, up to the largest force's.
+    #[inline(always)]
+    fn roots(&self, applied: &Command<T>, scale: T) -> [T; N] {
+        let (least, largest) = (self.least_force * scale, self.largest_force * scale);
+        let Command { thrust, torque } = applied.times(scale);
         self.inverse.map(|[t, r, p, y]| {
-            let force = r * torque.x + p * torque.y + t * *thrust + y * torque.z;
-            (force.clamp(self.least_force, self.largest_force) * self.per_thrust_coefficient).sqrt()
+            let force = r * torque.x + p * torque.y + t * thrust + y * torque.z;
+            force.clamp(least, largest).sqrt()
         })
     }
 }

@@ -267,7 +267,12 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
 
     /// Whether the last command was more than the actuators could apply.
     pub fn is_limited(&self) -> bool {
-        self.memory.actuators.sent(0) != self.memory.asked
+        let (sent, asked) = (self.memory.actuators.sent(0), &self.memory.asked);
+        // One by one: together they would be compared to the end.
+        sent.thrust != asked.thrust
+            || sent.torque.x != asked.torque.x
+            || sent.torque.y != asked.torque.y
+            || sent.torque.z != asked.torque.z
     }
 
     /// What turns commands into thrust and torque.
@@ -355,8 +360,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let (model, to) = (Model::at(weighed, sampled), &mut ahead.state);
 
         let (after, per_newton) = model.payload(applied.thrust, &observer.estimate().payload);
-        observer.correct_payload(rod, velocity, &(after + per_newton * step.thrust), &after);
-        (to.position, to.velocity) = advance(position, velocity, &(after + per_newton * drift.thrust), dt);
+        observer.correct_payload(rod, velocity, &(after + rod * (per_newton * step.thrust)), &after);
+        (to.position, to.velocity) = advance(position, velocity, &(after + rod * (per_newton * drift.thrust)), dt);
 
         let (after, per_newton) = model.rod(applied.thrust, &observer.estimate().rod);
         observer.correct_rod(rod, rod_rate, &(after + per_newton * step.thrust), &after);
