@@ -1,12 +1,14 @@
-//! Parameters that survive a reset: records in two pages of flash, each with a checksum, so that a
-//! write that is cut short costs what it wrote and nothing else.
+//! Parameters, a mission and a fence that survive a reset: records in two pages of flash, each with
+//! a checksum, so that a write that is cut short costs what it wrote and nothing else.
 //!
 //! A parameter that is set is appended as a record of its name's hash, its value and a checksum;
-//! the last good one counts. When a page is more than half full at a start, what differs from the
-//! defaults is written to the other page, whose first record, its number, comes last and makes it
-//! the valid one. Until then the old page is. Erasing, which may take seconds, so happens at a
-//! start alone.
+//! the last good one counts. The items of a mission are appended word by word, and then their count,
+//! which makes what stands right before it the mission. When a page is more than half full at a
+//! start, what differs from the defaults is written to the other page, with mission and fence; its
+//! first record, its number, comes last and makes it the valid one. Until then the old page is.
+//! Erasing, which may take seconds, so happens at a start alone.
 
+use crate::mission::{Item, Kind, WORDS};
 use crate::settings::{self, Settings};
 
 /// Bytes of a record: key, value, checksum, each with its least byte first.
@@ -38,7 +40,7 @@ pub trait Flash {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FlashFault;
 
-/// Why a parameter is not kept.
+/// Why a parameter or a mission is not kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotKept {
     /// The page is full until the next start.
@@ -55,7 +57,7 @@ impl From<FlashFault> for NotKept {
     }
 }
 
-/// Parameters in flash.
+/// Parameters, mission and fence in flash.
 #[derive(Clone, Debug)]
 pub struct Store<F> {
     flash: F,
@@ -65,8 +67,12 @@ pub struct Store<F> {
     next: usize,
 }
 
-/// The key of a page's first record. No name has this hash: a test tries all.
+/// The key of a page's first record, of a count of items, and of an item's first word, whose others
+/// have the next ones. No name has a hash as small: a test tries all.
 const NUMBER: u32 = 0;
+const COUNT: u32 = 0x10;
+const WORD: u32 = 0x20;
+const LEAST_HASH: u32 = 0x100;
 const ERASED: [u8; RECORD] = [0xFF; RECORD];
 
 impl<F: Flash> Store<F> {
@@ -94,7 +100,7 @@ impl<F: Flash> Store<F> {
             if record != ERASED {
                 store.next = index + 1;
             }
-            if let Some((key, value)) = parse(&record) {
+            if let Some((key, value)) = parse(&record).filter(|&(key, _)| key >= LEAST_HASH) {
                 // One that is no parameter's any more, or out of its range now, is left out.
                 let place = settings::entries().position(|entry| hash(entry.name.as_str()) == key);
                 let _ = place.map(|place| settings.set_at(place, f32::from_bits(value)));
@@ -115,14 +121,60 @@ impl<F: Flash> Store<F> {
         self.append(hash(entry.name.as_str()), value.to_bits())
     }
 
+    /// The items that are kept.
+    pub fn items(&self, kind: Kind) -> impl Iterator<Item = Item> {
+        let (first, count) = self.place(kind).unwrap_or_default();
+        (0..count).map(move |item| {
+            Item::of_words(core::array::from_fn(|word| {
+                let record = self.flash.read(self.page, first + item * WORDS + word);
+                parse(&record).map_or(0, |(_, value)| value)
+            }))
+        })
+    }
+
+    /// Keeps `items` in place of those that are kept.
+    ///
+    /// # Errors
+    /// They are not kept, and those before are.
+    pub fn keep_items(&mut self, kind: Kind, items: &[Item]) -> Result<(), NotKept> {
+        if self.items(kind).map(|item| item.words()).eq(items.iter().map(Item::words)) {
+            return Ok(());
+        }
+        if self.next + items.len() * WORDS >= F::RECORDS {
+            return Err(NotKept::Full);
+        }
+        for item in items {
+            for (key, word) in (WORD..).zip(item.words()) {
+                self.append(key, word)?;
+            }
+        }
+        self.append(COUNT + u32::from(kind.number()), items.len() as u32)
+    }
+
+    /// The first record of the items that are kept, and how many items they are.
+    fn place(&self, kind: Kind) -> Option<(usize, usize)> {
+        let record = |index| parse(&self.flash.read(self.page, index));
+        let counts = |&(_, (key, _)): &(usize, (u32, u32))| key == COUNT + u32::from(kind.number());
+        let (end, (_, count)) =
+            (1..self.next).rev().filter_map(|index| Some((index, record(index)?))).find(counts)?;
+        let count = count as usize;
+        let first = end.checked_sub(count.checked_mul(WORDS)?)?;
+        let keys = (WORD..WORD + WORDS as u32).cycle();
+        let is_whole =
+            (first..end).zip(keys).all(|(index, key)| record(index).is_some_and(|(found, _)| found == key));
+        is_whole.then_some((first, count))
+    }
+
     /// The flash.
     #[must_use]
     pub fn flash(&self) -> &F {
         &self.flash
     }
 
-    /// Writes what differs from the defaults to the other page, which is then the valid one.
+    /// Writes what differs from the defaults to the other page, with mission and fence, which is then
+    /// the valid one.
     fn tidy(&mut self, settings: &Settings) -> Result<(), FlashFault> {
+        let (old, places) = (self.page, Kind::ALL.map(|kind| self.place(kind)));
         self.page = 1 - self.page;
         self.next = 1;
         self.flash.erase(self.page)?;
@@ -130,6 +182,13 @@ impl<F: Flash> Store<F> {
             if value.to_bits() != entry.default.to_bits() {
                 let written = self.append(hash(entry.name.as_str()), value.to_bits());
                 written.map_err(|_| FlashFault)?;
+            }
+        }
+        for (first, count) in places.into_iter().flatten() {
+            for index in first..=first + count * WORDS {
+                if let Some((key, value)) = parse(&self.flash.read(old, index)) {
+                    self.append(key, value).map_err(|_| FlashFault)?;
+                }
             }
         }
         self.number = self.number.wrapping_add(1);
@@ -165,7 +224,11 @@ fn record(key: u32, value: u32) -> [u8; RECORD] {
 }
 
 /// Key and value, if the checksum is right.
-fn parse(&[a, b, c, d, e, f, g, h, i, j, k, l]: &[u8; RECORD]) -> Option<(u32, u32)> {
+fn parse(record: &[u8; RECORD]) -> Option<(u32, u32)> {
+    if *record == ERASED {
+        return None;
+    }
+    let &[a, b, c, d, e, f, g, h, i, j, k, l] = record;
     let (key, value) = (u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h]));
     (u32::from_le_bytes([i, j, k, l]) == checksum(key, value)).then_some((key, value))
 }
@@ -200,7 +263,7 @@ mod tests {
     fn every_name_has_its_own_key() {
         for (index, entry) in settings::entries().enumerate() {
             let key = hash(entry.name.as_str());
-            assert_ne!(key, NUMBER);
+            assert!(key >= LEAST_HASH);
             assert!(settings::entries().take(index).all(|other| hash(other.name.as_str()) != key));
         }
     }

@@ -1,12 +1,12 @@
-//! Parameters in flash: kept over resets, whatever write was cut short where.
+//! Parameters and missions in flash: kept over resets, whatever write was cut short where.
 
 use std::cell::Cell;
 use std::rc::Rc;
 
-use autopilot::{Flash, FlashFault, NotKept, RECORD, Settings, Store};
+use autopilot::{Autopilot, Boot, Flash, FlashFault, Item, Kind, Memory, NotKept, RECORD, Settings, Store};
 use rig::parameter;
 
-const RECORDS: usize = 24;
+const RECORDS: usize = 96;
 
 /// Flash whose power fails after so many bytes, in the middle of a write or an erasure.
 #[derive(Clone)]
@@ -156,5 +156,111 @@ impl Flash for Watched {
         let erased = self.flash.erase(page);
         self.chip.set(Some(self.flash.pages));
         erased
+    }
+}
+
+/// Waypoints 5 m apart, the last at `last` m.
+fn items(count: usize, last: f32) -> Vec<Item> {
+    const WAYPOINT: u16 = 16;
+    let item = |index: usize| Item {
+        command: WAYPOINT,
+        frame: 1,
+        current: u8::from(index == 0),
+        autocontinue: 1,
+        // No yaw is stated.
+        params: [0.0, 0.0, 0.0, f32::NAN],
+        x: 50_000 * index as i32,
+        y: -7,
+        z: if index + 1 == count { last } else { -10.0 },
+    };
+    (0..count).map(item).collect()
+}
+
+/// With NaN equal to itself.
+fn text(items: &[Item]) -> String {
+    format!("{items:?}")
+}
+
+fn kept<F: Flash>(store: &Store<F>, kind: Kind) -> String {
+    text(&store.items(kind).collect::<Vec<_>>())
+}
+
+fn open(flash: Torn) -> Store<Torn> {
+    Store::open(flash, &mut Settings::default()).unwrap()
+}
+
+#[test]
+fn missions_are_there_after_a_reset() {
+    let mut store = open(Torn::new());
+    assert_eq!(kept(&store, Kind::Mission), "[]");
+    let (route, fence) = (items(3, -10.0), items(4, -20.0));
+    store.keep_items(Kind::Mission, &items(2, -30.0)).unwrap();
+    store.keep_items(Kind::Fence, &fence).unwrap();
+    store.keep_items(Kind::Mission, &route).unwrap();
+    let mut store = open(store.flash().clone());
+    assert_eq!((kept(&store, Kind::Mission), kept(&store, Kind::Fence)), (text(&route), text(&fence)));
+    // The same again takes no room.
+    for _ in 0..RECORDS {
+        store.keep_items(Kind::Mission, &route).unwrap();
+    }
+
+    // The autopilot that starts has them.
+    let mut autopilot = Autopilot::new(Boot::default()).with_memory(Box::leak(Box::new(Memory::<256>::new())));
+    // Waypoints make no fence, which is said.
+    autopilot.recall(&store).unwrap_err();
+    assert_eq!(text(autopilot.mission().items(Kind::Mission)), text(&route));
+
+    store.keep_items(Kind::Mission, &[]).unwrap();
+    let store = open(store.flash().clone());
+    assert_eq!((kept(&store, Kind::Mission), kept(&store, Kind::Fence)), ("[]".to_owned(), text(&fence)));
+}
+
+#[test]
+fn a_page_full_of_missions_is_said_and_tidied_up() {
+    let (mut flash, mut kept_last) = (Torn::new(), String::new());
+    for round in 0..10 {
+        let mut settings = Settings::default();
+        let mut store = Store::open(flash, &mut settings).unwrap();
+        assert!(round == 0 || kept(&store, Kind::Mission) == kept_last && mass(&settings) == 0.7);
+        let index = settings.set_by_name("VEH_M_LOAD", 0.7).unwrap();
+        store.keep(&settings, index).unwrap();
+        let mut count = 0;
+        loop {
+            let route = items(3, -(round * 100 + count) as f32);
+            match store.keep_items(Kind::Mission, &route) {
+                Ok(()) => kept_last = text(&route),
+                Err(why) => break assert_eq!(why, NotKept::Full),
+            }
+            count += 1;
+        }
+        assert!(count > 0);
+        flash = store.flash().clone();
+    }
+}
+
+/// Power fails after every number of bytes in turn: at the next start there is the mission before or
+/// the one that was being written, whole.
+#[test]
+fn power_may_fail_in_the_middle_of_a_mission() {
+    for before in [0, 2, 5] {
+        let mut store = open(Torn::new());
+        let (old, new) = (items(before, -10.0), items(3, -20.0));
+        store.keep_items(Kind::Mission, &old).unwrap();
+        let pages = store.flash().pages;
+        // All of a start that tidies up, and all that is written then.
+        for bytes in 0..RECORDS * (RECORD + 1) + 40 * RECORD {
+            let torn = Torn { pages, left: Rc::new(Cell::new(bytes)) };
+            let chip = Rc::new(Cell::new(None));
+            let watched = Watched { flash: torn, chip: Rc::clone(&chip) };
+            if let Ok(mut store) = Store::open(watched, &mut Settings::default()) {
+                let _ = store.keep_items(Kind::Mission, &new);
+            }
+            let left = Rc::new(Cell::new(usize::MAX));
+            let mut store = open(Torn { pages: chip.take().unwrap_or(pages), left });
+            let found = kept(&store, Kind::Mission);
+            assert!([text(&old), text(&new)].contains(&found), "{before} {bytes}: {found}");
+            store.keep_items(Kind::Mission, &new).unwrap();
+            assert_eq!(kept(&open(store.flash().clone()), Kind::Mission), text(&new));
+        }
     }
 }

@@ -32,9 +32,10 @@ use rig::{Output, Rig, parameter};
 use crate::epoch::Epoch;
 use crate::estimate::Estimator;
 use crate::failsafe::{Failsafe, Loss};
-use crate::mission::{Flown, Memory, Mission};
+use crate::mission::{Flown, Kind, Memory, Mission, Refusal};
 use crate::seen::Navigation;
 use crate::settings::{Setting, Settings};
+use crate::store::{Flash, Store};
 
 /// The flight program's control side.
 #[derive(Debug)]
@@ -132,6 +133,17 @@ impl Autopilot {
     pub fn with_memory<const KNOTS: usize>(mut self, memory: &'static mut Memory<KNOTS>) -> Self {
         self.mission.lend(memory);
         self
+    }
+
+    /// Takes the mission and the fence that `store` has kept.
+    ///
+    /// # Errors
+    /// One of them makes no route or fence any more, and is not taken.
+    pub fn recall<F: Flash>(&mut self, store: &Store<F>) -> Result<(), Refusal> {
+        let Self { mission, settings, .. } = self;
+        let recall = |kind| mission.recall(kind, store.items(kind), settings);
+        // Both, before one of them is an error.
+        Kind::ALL.map(recall).into_iter().collect()
     }
 
     /// The parameters.

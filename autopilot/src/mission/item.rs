@@ -43,6 +43,9 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// All.
+    pub const ALL: [Self; 2] = [Self::Mission, Self::Fence];
+
     /// Of a MAV_MISSION_TYPE.
     pub fn of(mission_type: u8) -> Option<Self> {
         const MISSION: u8 = MavMissionType::MAV_MISSION_TYPE_MISSION as u8;
@@ -85,6 +88,9 @@ impl Refusal {
         Self::new(MavMissionResult::MAV_MISSION_NO_SPACE, what)
     }
 }
+
+/// Numbers of 32 bits that hold an item.
+pub(crate) const WORDS: usize = 9;
 
 /// An item as it was sent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +142,28 @@ impl Item {
             current,
             autocontinue,
             mission_type: kind.number(),
+        }
+    }
+
+    /// As numbers of 32 bits.
+    pub(crate) fn words(&self) -> [u32; WORDS] {
+        let Self { command, frame, current, autocontinue, params: [p1, p2, p3, p4], x, y, z } = *self;
+        let first = u32::from(command) | u32::from(frame) << 16 | u32::from(current) << 24;
+        let [p1, p2, p3, p4] = [p1, p2, p3, p4].map(f32::to_bits);
+        [first, autocontinue.into(), p1, p2, p3, p4, x.cast_unsigned(), y.cast_unsigned(), z.to_bits()]
+    }
+
+    /// The same again.
+    pub(crate) fn of_words([first, second, p1, p2, p3, p4, x, y, z]: [u32; WORDS]) -> Self {
+        Self {
+            command: first as u16,
+            frame: (first >> 16) as u8,
+            current: (first >> 24) as u8,
+            autocontinue: second as u8,
+            params: [p1, p2, p3, p4].map(f32::from_bits),
+            x: x.cast_signed(),
+            y: y.cast_signed(),
+            z: f32::from_bits(z),
         }
     }
 

@@ -10,6 +10,7 @@ mod fence;
 mod item;
 mod lay;
 
+pub(crate) use item::WORDS;
 pub use item::{DEGREES, Item, Kind, Refusal};
 
 use controller::{
@@ -250,6 +251,26 @@ impl Mission {
                 Err(refusal)
             }
         }
+    }
+
+    /// Takes `items` that were kept over a reset.
+    ///
+    /// # Errors
+    /// They make no route any more, and are not taken.
+    pub(crate) fn recall(
+        &mut self,
+        kind: Kind,
+        items: impl Iterator<Item = Item>,
+        settings: &Settings,
+    ) -> Result<(), Refusal> {
+        self.begin()?;
+        for item in items {
+            self.take(kind, item)?;
+        }
+        if self.coming() > 0 {
+            self.keep(kind, settings)?;
+        }
+        Ok(())
     }
 
     /// Forgets what there is of a kind.

@@ -31,6 +31,8 @@ pub struct Transfer {
     current: (u16, MissionState),
     /// When all was told last, ns.
     told_ns: u64,
+    /// What is kept has changed.
+    pub(super) has_changed: bool,
 }
 
 /// An upload under way.
@@ -45,7 +47,14 @@ struct Upload {
 
 impl Transfer {
     pub const fn new() -> Self {
-        Self { upload: None, ended: None, reached: 0, current: (0, MissionState::None), told_ns: 0 }
+        Self {
+            upload: None,
+            ended: None,
+            reached: 0,
+            current: (0, MissionState::None),
+            told_ns: 0,
+            has_changed: false,
+        }
     }
 }
 
@@ -116,6 +125,7 @@ impl Server {
                             .iter()
                             .filter(|(is_meant, _)| *is_meant)
                             .for_each(|&(_, kind)| mission.clear(kind, settings));
+                        self.transfer.has_changed = true;
                         MavMissionResult::MAV_MISSION_ACCEPTED
                     }
                 };
@@ -175,6 +185,7 @@ impl Server {
         self.transfer.upload = None;
         if count == 0 {
             mission.clear(kind, settings);
+            self.transfer.has_changed = true;
             send(ack(from, mission_type, R::MAV_MISSION_ACCEPTED));
             return;
         }
@@ -224,7 +235,7 @@ impl Server {
                 if let Some(remark) = remark {
                     send(warning(remark.text));
                 }
-                self.transfer.reached = 0;
+                (self.transfer.reached, self.transfer.has_changed) = (0, true);
                 MavMissionResult::MAV_MISSION_ACCEPTED
             }
             Err(refusal) => {

@@ -12,6 +12,7 @@ use link::dialect::*;
 use link::{Address, MavMessage, Message as _, Rejected};
 
 use crate::control::{Autopilot, Drive};
+use crate::mission::Refusal;
 use crate::report;
 use crate::store::NotKept;
 use commands::command_int;
@@ -31,6 +32,8 @@ pub enum Next {
     Step(LOAD_STATE_DATA),
     /// Keep the parameter at this index of [`Settings`](crate::Settings) for after a reset.
     Store(usize),
+    /// Keep mission and fence for after a reset.
+    StoreMission,
     /// Reset the controller.
     Reboot,
 }
@@ -90,7 +93,7 @@ impl Server {
         send(status(MavSeverity::MAV_SEVERITY_INFO, "link not signed: whoever is on it may command"));
     }
 
-    /// What to say of a parameter that is not kept for after a reset.
+    /// What to say of a parameter or mission that is not kept for after a reset.
     #[must_use]
     pub fn not_kept(why: NotKept) -> MavMessage {
         warning(match why {
@@ -98,6 +101,12 @@ impl Server {
             NotKept::Flash => "set, but not kept: flash failed",
             NotKept::NoMemory => "set, but not kept: this board has no memory",
         })
+    }
+
+    /// What to say of a mission that was kept, and makes no route any more.
+    #[must_use]
+    pub fn not_recalled(refusal: &Refusal) -> MavMessage {
+        warning(&refusal.text)
     }
 
     /// The sign of life.
@@ -218,7 +227,9 @@ impl Server {
             return Next::Nothing;
         }
         if self.mission(&message, sender, time_ns, autopilot, send) {
-            return Next::Nothing;
+            let has_changed = core::mem::take(&mut self.transfer.has_changed);
+            let is_kept = has_changed && autopilot.drive() == Drive::Flight;
+            return if is_kept { Next::StoreMission } else { Next::Nothing };
         }
         match message {
             MavMessage::LOAD_STATE(frame) => {

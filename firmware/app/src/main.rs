@@ -22,7 +22,7 @@ use defmt_rtt as _;
 mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use autopilot::{Answer, Autopilot, Boot, Drive, Memory, Next, NotKept, Server, Store};
+    use autopilot::{Answer, Autopilot, Boot, Drive, Kind, Memory, Next, NotKept, Server, Store};
     use heapless::{Deque, Vec};
     use link::dialect::LOAD_STATE_DATA;
     use link::{Decoder, Encoder, MavMessage};
@@ -94,10 +94,13 @@ mod app {
         if by_watchdog {
             defmt::error!("reset by the watchdog, {=u32} times since power-on", watchdog_resets);
         }
-        let autopilot = Autopilot::with(settings, boot).with_memory(cx.local.memory);
+        let mut autopilot = Autopilot::with(settings, boot).with_memory(cx.local.memory);
         let server = Server::new();
         let mut outbox = Outbox { encoder: Encoder::new(link::CONTROLLER), bytes: Deque::new(), lost: 0 };
         server.greet(&autopilot, &mut |message| outbox.send(&message));
+        if let Some(Err(refusal)) = store.as_ref().map(|store| autopilot.recall(store)) {
+            outbox.send(&Server::not_recalled(&refusal));
+        }
         timer.set_period(autopilot.period_s());
         board::pend_link();
         (
@@ -189,6 +192,16 @@ mod app {
                         let kept = autopilot.lock(|autopilot| match store {
                             Some(store) => store.keep(autopilot.settings(), index),
                             None => Err(NotKept::NoMemory),
+                        });
+                        if let Err(why) = kept {
+                            let _ = replies.push(Server::not_kept(why));
+                        }
+                    }
+                    Next::StoreMission => {
+                        let kept = autopilot.lock(|autopilot| {
+                            let store = store.as_mut().ok_or(NotKept::NoMemory)?;
+                            let mut keep = |kind| store.keep_items(kind, autopilot.mission().items(kind));
+                            keep(Kind::Mission).and(keep(Kind::Fence))
                         });
                         if let Err(why) = kept {
                             let _ = replies.push(Server::not_kept(why));

@@ -1,8 +1,8 @@
-//! Parameters in flash: sectors 10 and 11, of 128 KiB each, a page each.
+//! Parameters, mission and fence in flash: sectors 10 and 11, of 128 KiB each, a page each.
 //!
 //! While flash is written or erased the core waits for its next instruction: 50 µs for a record,
-//! which is written while disarmed; up to two seconds for a sector, which is erased at a start,
-//! before the watchdog.
+//! which is written while disarmed, and so 60 ms for the longest mission; up to two seconds for a
+//! sector, which is erased at a start, before the watchdog.
 
 use autopilot::{Flash, FlashFault, RECORD};
 use stm32f4xx_hal::pac::FLASH;
@@ -50,8 +50,8 @@ impl Memory {
 const ERRORS: u32 = 0b1111_0010;
 
 impl Flash for Memory {
-    /// 12 KiB: what a start reads in milliseconds.
-    const RECORDS: usize = 1024;
+    /// 96 KiB: half of them hold all parameters, the longest mission and the longest fence.
+    const RECORDS: usize = 8192;
 
     fn read(&self, page: usize, record: usize) -> [u8; RECORD] {
         let from = Self::address(page, record) as *const [u8; RECORD];
