@@ -1,8 +1,8 @@
 //! The controller as it flies: a supervised law of either kind, with limits and rotors.
 
 use controller::{
-    Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Measured, Mode, Path, Real, Refused,
-    Request, Sampling, Solution, State, Supervisor, Vector3, Vehicle, dynamics,
+    Actuation, Command, Controller, Disturbance, Fault, Follow, Follower, Margin, Margins, Measured, Mode, Path,
+    Real, Refused, Request, Sampling, Solution, State, Supervisor, Vector3, Vehicle, dynamics,
 };
 
 use crate::actuators::Actuators;
@@ -14,8 +14,8 @@ use crate::setpoint;
 
 /// A controller made of [`Parameters`]: states and requests in, commands and rotor speeds out.
 #[derive(Clone, Debug)]
-pub struct Rig<T: Real, P = AnyPath<T>> {
-    law: Law<T, P>,
+pub struct Rig<T: Real, P = AnyPath<T>, A = Actuators<T>> {
+    law: Law<T, P, A>,
     last: Output<T>,
     /// Of an inner rate loop about each body axis, with the latency to it, s.
     time_constants: Vector3<T>,
@@ -24,11 +24,11 @@ pub struct Rig<T: Real, P = AnyPath<T>> {
 /// Either law under its supervisor.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)]
-enum Law<T: Real, P> {
-    Follow(Supervisor<T, Follow<T, P>, Actuators<T>>),
+enum Law<T: Real, P, A> {
+    Follow(Supervisor<T, Follow<T, P>, A>),
     /// With the circle's radius (m), p3 (m) and rate (rad/s).
     #[cfg(feature = "tracking")]
-    Track(Supervisor<T, controller::Track<T>, Actuators<T>>, [T; 3]),
+    Track(Supervisor<T, controller::Track<T>, A>, [T; 3]),
 }
 
 macro_rules! either {
@@ -100,12 +100,30 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     /// # Errors
     /// As [`new`](Rig::new).
     pub fn on(path: P, parameters: &Parameters<T>) -> Result<Self, SetupError<T>> {
+        Self::with_actuation(path, parameters, Actuators::new(parameters)?)
+    }
+
+    /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
+    /// front left, rear right.
+    #[must_use]
+    pub fn duties(&self) -> [T; 4] {
+        self.actuators().duties(&self.last.command)
+    }
+}
+
+impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
+    /// The same with another `actuation` between the law and the rotors than `LIM_*` and `ROT_*`
+    /// describe.
+    ///
+    /// # Errors
+    /// As [`new`](Rig::new).
+    pub fn with_actuation(path: P, parameters: &Parameters<T>, actuation: A) -> Result<Self, SetupError<T>> {
         let (vehicle, sampling) = (parameters.vehicle()?, parameters.sampling());
         let law = if parameters.is_on(parameter!("CTL_LAW")) {
-            Self::tracking(vehicle, sampling, parameters)?
+            Self::tracking(vehicle, sampling, parameters, actuation)?
         } else {
             let follower = Follower::new(vehicle, path, parameters.gains(), sampling)?;
-            Law::Follow(supervised(follower, parameters)?)
+            Law::Follow(supervised(follower, parameters, actuation)?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
         Ok(Self { law, last, time_constants: setpoint::time_constants(parameters) })
@@ -116,14 +134,15 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
         vehicle: Vehicle<T>,
         sampling: Sampling<T>,
         parameters: &Parameters<T>,
-    ) -> Result<Law<T, P>, SetupError<T>> {
+        actuation: A,
+    ) -> Result<Law<T, P, A>, SetupError<T>> {
         let tracker = controller::Tracker::new(vehicle, parameters.track_gains(), sampling)?;
         let numbers = [parameter!("PATH_RADIUS"), parameter!("PATH_P3"), parameter!("REF_RATE")];
-        Ok(Law::Track(supervised(tracker, parameters)?, numbers.map(|number| parameters.get(number))))
+        Ok(Law::Track(supervised(tracker, parameters, actuation)?, numbers.map(|number| parameters.get(number))))
     }
 
     #[cfg(not(feature = "tracking"))]
-    fn tracking(_: Vehicle<T>, _: Sampling<T>, _: &Parameters<T>) -> Result<Law<T, P>, SetupError<T>> {
+    fn tracking(_: Vehicle<T>, _: Sampling<T>, _: &Parameters<T>, _: A) -> Result<Law<T, P, A>, SetupError<T>> {
         Err(controller::OutOfRange { field: "CTL_LAW", value: T::one(), min: T::zero(), max: T::zero() }.into())
     }
 
@@ -180,16 +199,17 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
 }
 
 /// A controller with actuators and observers, under its supervisor.
-fn supervised<T: Real, L: controller::Law<T>>(
+fn supervised<T: Real, L: controller::Law<T>, A: Actuation<T>>(
     controller: Controller<T, L>,
     parameters: &Parameters<T>,
-) -> Result<Supervisor<T, L, Actuators<T>>, SetupError<T>> {
-    let controller = controller.with_actuation(Actuators::new(parameters)?)?.with_observer(parameters.observer())?;
+    actuation: A,
+) -> Result<Supervisor<T, L, A>, SetupError<T>> {
+    let controller = controller.with_actuation(actuation)?.with_observer(parameters.observer())?;
     let supervisor = Supervisor::new(controller, parameters.envelope(), parameters.approach(), parameters.policy());
     Ok(supervisor.map_err(parameters.naming(&["ENV_", "APP_", "POL_"]))?)
 }
 
-impl<T: Real, P: Path<T>> Rig<T, P> {
+impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
     /// The last step's answer.
     #[must_use]
     pub fn output(&self) -> &Output<T> {
@@ -210,13 +230,6 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
     #[must_use]
     pub fn u_zeta(&self) -> Option<T> {
         either!(&self.law, supervisor => supervisor.answer().map(|answer| answer.u_zeta))
-    }
-
-    /// The last step's command as rotor speeds, shares of the largest: front right, rear left,
-    /// front left, rear right.
-    #[must_use]
-    pub fn duties(&self) -> [T; 4] {
-        self.actuators().duties(&self.last.command)
     }
 
     /// The law that follows a path, if that is the one that flies.
@@ -250,7 +263,7 @@ impl<T: Real, P: Path<T>> Rig<T, P> {
 
     /// What turns commands into thrust and torque.
     #[must_use]
-    pub fn actuators(&self) -> &Actuators<T> {
+    pub fn actuators(&self) -> &A {
         either!(&self.law, supervisor => supervisor.sampler().actuation())
     }
 

@@ -45,7 +45,7 @@ pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> 
     Vector3::from(parameters.run(run!("INN_T_1" to "INN_T_3"))).map(|time| latency + time)
 }
 
-impl<T: Real, P: controller::Path<T>> Rig<T, P> {
+impl<T: Real, P: controller::Path<T>, A: controller::Actuation<T>> Rig<T, P, A> {
     /// The last step's command as an inner rate loop's setpoint, at the
     /// [body rate](controller::Measured::body_rate) it was made on, rad/s. Where none is known it is
     /// to stop turning.

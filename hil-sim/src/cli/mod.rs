@@ -13,6 +13,7 @@ mod load;
 mod many;
 mod plant;
 mod policies;
+mod replay;
 mod route;
 mod tune;
 mod view;
@@ -209,6 +210,18 @@ enum Command {
         #[command(flatten)]
         logs: Logs,
     },
+    /// Put a flown log through estimator and law: what would they have said?
+    ///
+    /// The UAV moves as the log has it, whatever the law says. Same table, report and logs as
+    /// `run`, with the logged thrust, torque and load beside those replayed, and a sentence for
+    /// whatever the log lacks.
+    #[command(after_help = replay::EXAMPLES)]
+    Replay {
+        #[command(flatten)]
+        arguments: replay::ReplayArguments,
+        #[command(flatten)]
+        logs: Logs,
+    },
     /// Open a report in the browser.
     #[command(after_help = view::EXAMPLES)]
     View {
@@ -278,6 +291,7 @@ pub fn run() -> Ended {
         Some(Command::Fit(arguments)) => fit::fit(&common, &arguments),
         Some(Command::Route(arguments)) => route::route(&common, &arguments),
         Some(Command::Hil { arguments, logs }) => hil::fly(&common, &arguments, &logs),
+        Some(Command::Replay { arguments, logs }) => replay::replay(&common, &arguments, &logs),
         Some(Command::View { file }) => view::view(&file),
         Some(Command::Plant { file }) => plant::plant(&file),
         Some(Command::Pilot { file }) => plant::pilot(&file),

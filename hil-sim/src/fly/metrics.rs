@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use crate::describe::scenario::{Law, Scenario};
-use crate::fly::flight::Moment;
+use crate::fly::pilot::Decision;
 use crate::fly::stops::Stops;
 use crate::fly::touchdown::Touchdown;
-use controller::Vector3;
+use controller::{State, Vector3};
 
 /// d_C below which a flight counts as settled, m.
 pub const SETTLED_M: f64 = 0.05;
@@ -156,9 +156,13 @@ impl<'a> Metrics<'a> {
         }
     }
 
-    /// Adds what is seen at `t` (s), d_C (m) from the curve.
-    pub fn push(&mut self, t: f64, distance: f64, moment: &Moment<'_>) {
-        self.touchdown = *moment.touchdown;
+    /// Takes how both bodies came to the ground so far.
+    pub fn touch(&mut self, touchdown: &Touchdown) {
+        self.touchdown = *touchdown;
+    }
+
+    /// Adds the `state` at `t` (s), d_C (m) from the curve, and what the pilot made of it.
+    pub fn push(&mut self, t: f64, distance: f64, state: &State<f64>, decision: Option<&Decision>) {
         // Comparisons that a NaN fails: a flight that ends as none has not settled.
         if distance < SETTLED_M {
             self.first_below_s.get_or_insert(t);
@@ -174,7 +178,7 @@ impl<'a> Metrics<'a> {
         if reached(self.released_s) {
             self.dc_after_release = Some(self.dc_after_release.unwrap_or(0.0).max(distance));
         }
-        self.stops.push(&moment.state.position, &moment.state.velocity);
+        self.stops.push(&state.position, &state.velocity);
         if self.steady_from_s.is_none() || reached(self.steady_from_s) {
             self.distance.push(distance);
             self.distance_squared.push(distance * distance);
@@ -182,14 +186,14 @@ impl<'a> Metrics<'a> {
         if reached(self.steady_from_s)
             && let Some(circle) = self.law.circle()
         {
-            let [radius, p3, speed] = circle_errors(&moment.state.position, &moment.state.velocity, circle);
+            let [radius, p3, speed] = circle_errors(&state.position, &state.velocity, circle);
             self.radius.push(radius);
             self.p3.push(p3);
             self.speed.push(speed);
         }
         // Not across an obstacle, after which the law begins anew.
         let last_thrust = self.last_thrust.take();
-        if let Some(decision) = moment.decision {
+        if let Some(decision) = decision {
             let thrust = decision.command.thrust;
             let torque = decision.command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
             self.effort += (thrust - self.hover_thrust).hypot(torque) * self.period;

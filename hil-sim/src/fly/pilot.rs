@@ -1,8 +1,10 @@
 //! The controller as it flies everywhere, behind the face of whatever answers readings, in either
 //! scalar, with its numbers as f64 for recording.
 
-use controller::{Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3};
-use rig::{Parameters, Rig};
+use controller::{
+    Actuation, Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3,
+};
+use rig::{Actuators, Parameters, Rig};
 
 use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec};
 use crate::describe::input::Invalid;
@@ -28,8 +30,8 @@ pub trait Answers {
 }
 
 /// A controller at work in the scalar `T`.
-pub struct Pilot<T: Real> {
-    rig: Box<Rig<T, FlownPath<T>>>,
+pub struct Pilot<T: Real, A = Actuators<T>> {
+    rig: Box<Rig<T, FlownPath<T>, A>>,
     /// Of the tracking law.
     reference: Option<ReferenceSpec>,
     /// A law alone does not join its path, it flies.
@@ -111,18 +113,40 @@ impl<T: Real> Pilot<T> {
     /// # Errors
     /// As [`new`](Self::new).
     pub fn of(spec: &ControllerSpec, parameters: &Parameters<f64>) -> Result<Self, Invalid> {
+        Self::with_actuation(spec, parameters, |actuators| actuators)
+    }
+}
+
+impl<T: Real, A: Actuation<T>> Pilot<T, A> {
+    /// The same with what `of` makes of its actuators in their place.
+    ///
+    /// # Errors
+    /// As [`new`](Pilot::new).
+    pub fn with_actuation(
+        spec: &ControllerSpec,
+        parameters: &Parameters<f64>,
+        of: impl FnOnce(Actuators<T>) -> A,
+    ) -> Result<Self, Invalid> {
         let refused = |error| Invalid::out_of_range("controller", error);
         let path: FlownPath<T> = match &spec.law {
             Law::Follow { path, .. } => path.build().map_err(refused)?,
             // Never flown: the tables' own.
             Law::Track { .. } => PathSpec::default().build().map_err(refused)?,
         };
-        let rig = Rig::on(path, &parameters.cast()).map_err(|error| Invalid::new("controller", error))?;
+        let parameters = parameters.cast();
+        let actuation = of(Actuators::new(&parameters).map_err(|error| Invalid::new("controller", error))?);
+        let rig =
+            Rig::with_actuation(path, &parameters, actuation).map_err(|error| Invalid::new("controller", error))?;
         let reference = match spec.law {
             Law::Follow { .. } => None,
             Law::Track { reference, .. } => Some(reference),
         };
         Ok(Self { rig: Box::new(rig), reference, joins: spec.supervised, gives_rates: spec.rate_loop_s.is_some() })
+    }
+
+    /// What turns its commands into thrust and torque.
+    pub fn actuation(&self) -> &A {
+        self.rig.actuators()
     }
 
     /// The command for the hold that begins at `t_s`, from what is read then.
@@ -165,7 +189,7 @@ impl<T: Real> Pilot<T> {
     }
 }
 
-impl<T: Real> Answers for Pilot<T> {
+impl<T: Real, A: Actuation<T>> Answers for Pilot<T, A> {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
         // A refused state leaves the law as it was, which the flight then shows.
         let _ = self.rig.start(&state.cast(), zeta.map(T::lit));

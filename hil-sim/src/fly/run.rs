@@ -7,11 +7,11 @@ use super::deviation::Deviation;
 use super::flight::{Control, End, Entry, Plan};
 use super::metrics::{Metrics, Results};
 use super::pilot::{Answers, Pilot};
-use super::sample::Sample;
-use super::sight::Sight;
+use super::sample::{Contact, Sample, Seen};
 use super::twin::Twinned;
 use crate::describe::input::Invalid;
 use crate::describe::scenario::Scenario;
+use crate::study::replay::Replayed;
 use crate::world::{Bodies, Seed};
 
 /// The scalar that the pilot computes in.
@@ -41,6 +41,8 @@ pub struct Flight {
     pub times_real_time: f64,
     /// The same with the twin's.
     pub times_real_time_with_twin: f64,
+    /// Of a replay: how it compares with its log.
+    pub replayed: Option<Replayed>,
 }
 
 /// Flies `scenario`; with `twin`, an f64 twin of the pilot answers beside it.
@@ -93,7 +95,8 @@ pub fn fly_on(
     let end = super::flight::fly(scenario, &plan, &mut pilot, &mut |moment| {
         flown_s = moment.step as f64 * period;
         let distance_m = moment.distance_m.unwrap_or(f64::NAN);
-        metrics.push(flown_s, distance_m, moment);
+        metrics.push(flown_s, distance_m, moment.state, moment.decision);
+        metrics.touch(moment.touchdown);
         if moment.step % log_every == 0 || moment.is_over {
             // At the start as they were given: there and back they would be rounded.
             let x = if moment.step == 0 { scenario.initial } else { moment.state.to_paper() };
@@ -105,7 +108,9 @@ pub fn fly_on(
                 uav_velocity,
                 distance_m,
                 decision: moment.decision.copied(),
-                specific_force: moment.sight.map(Sight::specific_force),
+                seen: moment.sight.and_then(Seen::of),
+                contact: Contact::of(moment.body),
+                logged: None,
             });
         }
     });
@@ -118,5 +123,6 @@ pub fn fly_on(
         end,
         times_real_time: flown_s / cpu.saturating_sub(twin_cpu).as_secs_f64(),
         times_real_time_with_twin: flown_s / cpu.as_secs_f64(),
+        replayed: None,
     })
 }

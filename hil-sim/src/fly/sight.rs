@@ -33,14 +33,16 @@ pub struct Sight {
 
 /// Thrust as an autopilot without rotor speeds has it: the command, late and through a first-order
 /// lag.
-struct RotorModel {
+pub struct RotorModel {
     line: VecDeque<f64>,
     given: f64,
     kept: f64,
 }
 
 impl RotorModel {
-    fn new(scenario: &Scenario, thrust: f64) -> Self {
+    /// Of the latency and lag that the law of `scenario` is told, after a long time under `thrust`, N.
+    #[must_use]
+    pub fn new(scenario: &Scenario, thrust: f64) -> Self {
         let controller = &scenario.controller;
         let periods = (controller.latency_s * controller.rate_hz).round() as usize;
         let kept = if controller.rotor_lag_s > 0.0 {
@@ -52,13 +54,47 @@ impl RotorModel {
     }
 
     /// A period under `thrust`, N: the mean of what the rotors gave at its ends.
-    fn pass(&mut self, thrust: f64) -> f64 {
+    pub fn pass(&mut self, thrust: f64) -> f64 {
         self.line.push_back(thrust);
         let target = self.line.pop_front().unwrap_or(thrust);
         let before = self.given;
         self.given = target + (before - target) * self.kept;
         0.5 * (before + self.given)
     }
+}
+
+/// The payload filter of `scenario`, told that the rod hangs, or that the load stands.
+///
+/// # Errors
+/// [`OutOfRange`] for a scenario's number that it refuses.
+pub fn payload_filter(spec: &EstimatorSpec, scenario: &Scenario) -> Result<Payload<f32>, OutOfRange<f32>> {
+    let period = 1.0 / scenario.controller.rate_hz;
+    let [payload_drag, uav_drag] = spec.drags(scenario.environment.air.as_ref());
+    let filter = Payload::new(PayloadParams {
+        payload_drag,
+        uav_drag,
+        imu: scenario.sensors.imu.map_or_else(Vector3::zeros, |imu| single(&imu.lever.into())),
+        noise: spec.payload_noise(),
+        ..PayloadParams::of(&scenario.controller.vehicle.cast(), period as f32)
+    })?;
+    Ok(if scenario.standing { filter.with_slack_cable() } else { filter })
+}
+
+/// Whether the rod is known, by what it is worth now and whether it was known before.
+#[must_use]
+pub fn is_known(validity: Validity, before: bool) -> bool {
+    match validity {
+        Validity::Valid => true,
+        // A wrong noise figure makes no rod unknown.
+        Validity::Inconsistent => before,
+        Validity::Converging | Validity::Blind | Validity::Slack => false,
+    }
+}
+
+/// What may be asked for of what is `wanted`: to follow only a rod that is known.
+#[must_use]
+pub fn allowed(wanted: Request, is_known: bool) -> Request {
+    if wanted == Request::Follow && !is_known { Request::Hold } else { wanted }
 }
 
 impl Sight {
@@ -104,19 +140,10 @@ impl Sight {
             noise: spec.navigation_noise(),
             ..NavigationParams::every(period as f32)
         };
-        let [payload_drag, uav_drag] = spec.drags(scenario.environment.air.as_ref());
-        let payload = PayloadParams {
-            payload_drag,
-            uav_drag,
-            imu: navigation.imu,
-            noise: spec.payload_noise(),
-            ..PayloadParams::of(&scenario.controller.vehicle.cast(), period as f32)
-        };
-        let payload = Payload::new(payload)?;
         Ok(Self {
             instruments: InstrumentModel::new(sensors, period, seed),
             navigation: Navigation::new(navigation, &motion, [(1.5 * deviation) as f32, 0.1])?,
-            payload: if scenario.standing { payload.with_slack_cable() } else { payload },
+            payload: payload_filter(spec, scenario)?,
             rotors: RotorModel::new(scenario, hover),
             mocap: sensors.mocap.map(|mocap| (mocap.noise * TRUST, mocap.attitude_noise * TRUST)),
             estimate: None,
@@ -151,13 +178,7 @@ impl Sight {
         }
         // On a rod the flight has begun, and there is no navigation beside the state to hold by.
         let apart = matches!(world.body(), Body::Cable(_));
-        self.has_found = match estimate.health.validity {
-            _ if !apart => true,
-            Validity::Valid => true,
-            // A wrong noise figure makes no rod unknown.
-            Validity::Inconsistent => self.has_found,
-            Validity::Converging | Validity::Blind | Validity::Slack => false,
-        };
+        self.has_found = !apart || is_known(estimate.health.validity, self.has_found);
         self.estimate = Some(estimate);
         let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
         let uav = Uav { position, velocity, attitude, body_rate };
@@ -190,7 +211,7 @@ impl Sight {
     /// until then.
     #[must_use]
     pub fn allows(&self, wanted: Request) -> Request {
-        if wanted == Request::Follow && !self.has_found { Request::Hold } else { wanted }
+        allowed(wanted, self.has_found)
     }
 
     /// The last estimate.

@@ -7,6 +7,7 @@ use crate::fly::batch::Outcome;
 use crate::fly::deviation::Deviation;
 use crate::fly::flight::End;
 use crate::fly::metrics::Results;
+use crate::study::replay::Replayed;
 
 #[derive(Serialize)]
 struct Summary<'a> {
@@ -33,6 +34,9 @@ struct Run<'a> {
     /// With the f32 law only.
     times_real_time: f64,
     times_real_time_with_twin: f64,
+    /// How a replay compares with its log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    replayed: Option<&'a Replayed>,
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<&'a Results>,
 }
@@ -54,6 +58,7 @@ pub fn json(outcomes: &[Outcome], reference: &Reference) -> String {
             f32_f64_relative: outcome.flight.deviation,
             times_real_time: outcome.flight.times_real_time,
             times_real_time_with_twin: outcome.flight.times_real_time_with_twin,
+            replayed: outcome.flight.replayed.as_ref(),
             reference: reference.runs.get(&outcome.scenario.name),
         })
         .collect();

@@ -10,4 +10,5 @@ pub mod fit;
 mod json;
 pub mod pilot;
 pub mod plant;
+pub mod replay;
 pub mod tune;

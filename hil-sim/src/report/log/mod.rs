@@ -11,6 +11,7 @@ mod ulog;
 pub use read::{ReadError, read};
 pub use record::Record;
 pub use table::{Column, Table, Values};
+pub use ulog::{MOTORS, OUTPUTS};
 
 use std::path::Path;
 

@@ -4,6 +4,7 @@
 use super::record::Record;
 use crate::fly::fault::describe;
 use crate::fly::pilot::Telemetry;
+use crate::fly::sample::Contact;
 use controller::{Matrix3, Vector3};
 
 /// Numbers of a record, padded with zeros to the longest quantity.
@@ -46,6 +47,32 @@ pub const WORDS: &[Word] = &[
         name: "fault",
         about: "Why the vehicle does not do what was asked; empty if it does",
         value: |r| r.decision.map(|decision| decision.fault.map(describe).unwrap_or_default()),
+    },
+    Word {
+        topic: "status",
+        name: "cable",
+        about: "Whether the cable pulls: taut or slack",
+        value: |r| r.contact.map(|contact| if contact.is_taut { "taut" } else { "slack" }.to_owned()),
+    },
+    Word {
+        topic: "status",
+        name: "ground",
+        about: "Who is on the ground: load, UAV, both; empty if nobody is",
+        value: |r| {
+            let word = |contact: Contact| match contact.touching {
+                [false, false] => "",
+                [true, false] => "load",
+                [false, true] => "UAV",
+                [true, true] => "both",
+            };
+            r.contact.map(|contact| word(contact).to_owned())
+        },
+    },
+    Word {
+        topic: "status",
+        name: "estimate",
+        about: "What the estimate of the rod is worth: valid, converging, inconsistent, blind or slack",
+        value: |r| r.seen.map(|seen| format!("{:?}", seen.validity).to_lowercase()),
     },
 ];
 
@@ -97,7 +124,7 @@ pub const QUANTITIES: &[Quantity] = &[
         topic: "uav",
         columns: &[("f1", "m/s^2"), ("f2", "m/s^2"), ("f3", "m/s^2")],
         about: "The accelerometer's specific force in body axes, mean of a control period",
-        values: |r| r.specific_force.as_ref().and_then(vector),
+        values: |r| r.seen.and_then(|seen| vector(&seen.specific_force)),
     },
     Quantity {
         topic: "angles",
@@ -122,6 +149,42 @@ pub const QUANTITIES: &[Quantity] = &[
         columns: &[("torque1", "N m"), ("torque2", "N m"), ("torque3", "N m")],
         about: "Torque τ in body axes commanded for the coming hold",
         values: |r| r.decision.and_then(|decision| vector(&decision.command.torque)),
+    },
+    Quantity {
+        topic: "logged",
+        columns: &[("logged_thrust", "N")],
+        about: "Thrust that the replayed log has",
+        values: |r| r.logged.and_then(|command| number(command.thrust)),
+    },
+    Quantity {
+        topic: "logged",
+        columns: &[("logged_torque1", "N m"), ("logged_torque2", "N m"), ("logged_torque3", "N m")],
+        about: "Torque in body axes that the replayed log has",
+        values: |r| r.logged.and_then(|command| vector(&command.torque)),
+    },
+    Quantity {
+        topic: "estimate",
+        columns: &[("est_p1", "m"), ("est_p2", "m"), ("est_p3", "m")],
+        about: "Position of the payload in N as estimated",
+        values: |r| r.seen.and_then(|seen| vector(&seen.position)),
+    },
+    Quantity {
+        topic: "estimate",
+        columns: &[("est_q1", "1"), ("est_q2", "1"), ("est_q3", "1")],
+        about: "Rod q as estimated, from the UAV to the payload in N",
+        values: |r| r.seen.and_then(|seen| vector(&seen.rod)),
+    },
+    Quantity {
+        topic: "estimate",
+        columns: &[("rod_sigma", "rad")],
+        about: "Standard deviation of the estimated rod, both axes together",
+        values: |r| r.seen.and_then(|seen| number(seen.rod_deviation)),
+    },
+    Quantity {
+        topic: "estimate",
+        columns: &[("position_sigma", "m")],
+        about: "Standard deviation of the navigation's level position, both axes together",
+        values: |r| r.seen.and_then(|seen| seen.position_deviation).and_then(number),
     },
     Quantity {
         topic: "law",

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::ulog::PX4;
+use super::ulog::{PX4, PX4_READ};
 
 /// A log that can't be read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -125,7 +125,7 @@ fn find<const N: usize>(
 ) -> Result<[Place; N], ReadError> {
     let mut columns: HashMap<&str, Place> = HashMap::new();
     for (&topic, name) in topics {
-        let px4 = PX4.iter().find(|(known, _)| known == name).map(|(_, fields)| *fields);
+        let px4 = PX4.iter().chain(&PX4_READ).find(|(known, _)| known == name).map(|(_, fields)| *fields);
         let mut offset = 0;
         for field in formats.get(name).into_iter().flat_map(|fields| fields.split(';')) {
             let Some((kind, field)) = field.split_once(' ') else { continue };

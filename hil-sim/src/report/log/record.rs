@@ -1,12 +1,12 @@
 //! What is logged of one instant. The only place that knows how a flight keeps its samples.
 
-use controller::{State, Vector3};
+use controller::{Command, State, Vector3};
 
 use crate::describe::scenario::{Law, Scenario};
 use crate::fly::batch::Outcome;
 use crate::fly::flight::Moment;
 use crate::fly::pilot::{Decision, Telemetry};
-use crate::fly::sight::Sight;
+use crate::fly::sample::{Contact, Seen};
 use crate::world::Bodies;
 
 /// One logged instant of a flight.
@@ -24,8 +24,12 @@ pub struct Record {
     pub distance_m: Option<f64>,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
     pub decision: Option<Decision>,
-    /// Accelerometer's reading in body axes, m/s², where an estimator has one.
-    pub specific_force: Option<Vector3<f64>>,
+    /// What an estimator held, where there is one.
+    pub seen: Option<Seen>,
+    /// Cable and ground, where there are any.
+    pub contact: Option<Contact>,
+    /// Of a replay: thrust and torque that the log has.
+    pub logged: Option<Command<f64>>,
     /// Errors of speed (m/s) and yaw (rad), of a law that follows a path.
     pub errors: Option<[f64; 2]>,
 }
@@ -52,7 +56,9 @@ impl Record {
             distance_m,
             errors: decision.and_then(|decision| decision.telemetry).filter(|_| follows).map(errors),
             decision,
-            specific_force: None,
+            seen: None,
+            contact: None,
+            logged: None,
         }
     }
 
@@ -63,9 +69,10 @@ impl Record {
         let record = samples.map(|sample| {
             let state = State::from_paper(&sample.x);
             let uav = [sample.uav_position, sample.uav_velocity];
-            let specific_force = sample.specific_force;
             Self {
-                specific_force,
+                seen: sample.seen,
+                contact: sample.contact,
+                logged: sample.logged,
                 ..Self::new(scenario, sample.t_s, state, uav, Some(sample.distance_m), sample.decision)
             }
         });
@@ -78,7 +85,8 @@ impl Record {
         let Bodies { uav_position, uav_velocity, .. } = moment.body.bodies();
         let uav = [uav_position, uav_velocity];
         Self {
-            specific_force: moment.sight.map(Sight::specific_force),
+            seen: moment.sight.and_then(Seen::of),
+            contact: Contact::of(moment.body),
             ..Self::new(scenario, moment.t_s, *moment.state, uav, moment.distance_m, moment.decision.copied())
         }
     }

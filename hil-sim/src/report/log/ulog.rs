@@ -28,6 +28,28 @@ pub const PX4: [(&str, &[Field]); 4] = [
     ("vehicle_acceleration", &[("float[3] xyz", &["f1", "f2", "f3"])]),
 ];
 
+/// PX4's topics that are read besides: the IMU at its full rate, and thrust as a share of the full
+/// one, in three forms. Not written: shares need to know what is full.
+pub const PX4_READ: [(&str, &[Field]); 4] = [
+    (
+        "sensor_combined",
+        &[
+            ("float[3] gyro_rad", &["raw_omega1", "raw_omega2", "raw_omega3"]),
+            ("float[3] accelerometer_m_s2", &["raw_f1", "raw_f2", "raw_f3"]),
+        ],
+    ),
+    ("vehicle_thrust_setpoint", &[("float[3] xyz", &["thrust_share1", "thrust_share2", "thrust_share3"])]),
+    ("actuator_motors", &[("float[12] control", &MOTORS)]),
+    ("actuator_outputs", &[("float[16] output", &OUTPUTS)]),
+];
+
+/// Shares of full thrust of up to eight motors; NaN where there is none.
+pub const MOTORS: [&str; 8] = ["motor1", "motor2", "motor3", "motor4", "motor5", "motor6", "motor7", "motor8"];
+
+/// Outputs of as many, µs of a pulse from 1000 to 2000; 0 where there is none.
+pub const OUTPUTS: [&str; 8] =
+    ["output1", "output2", "output3", "output4", "output5", "output6", "output7", "output8"];
+
 /// The log as ULog.
 pub fn encode(table: &Table) -> Vec<u8> {
     let mut file = Writer::new();

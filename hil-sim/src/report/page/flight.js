@@ -75,6 +75,13 @@ class Flight {
     ];
   }
 
+  // When load or UAV came to the ground: [t, who].
+  touches() {
+    const on = (word, who) => word === who || word === "both";
+    return this.grounds.flatMap(([t, word], k) => ["load", "UAV"]
+      .filter((who) => k > 0 && on(word, who) && !on(this.grounds[k - 1][1], who)).map((who) => [t, who]));
+  }
+
   // The word of a list of [from, word] at t.
   static word(list, t) {
     let found = "";
@@ -97,7 +104,8 @@ class Flight {
       distance: this.value("d_c", row), speed: norm("v"),
       tilt: (Math.acos(Math.min(Math.max(axes[2][2], -1), 1)) * 180) / Math.PI,
       tension: -lambda * this.payload_mass,
-      slack: length < 0.99 * this.rod_length || lambda >= 0,
+      slack: this.cables.length > 0 ? Flight.word(this.cables, t) === "slack" : length < 0.99 * this.rod_length || lambda >= 0,
+      ground: Flight.word(this.grounds, t),
       mode: Flight.word(this.modes, t), fault: Flight.word(this.faults, t),
     };
   }

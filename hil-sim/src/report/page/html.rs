@@ -40,10 +40,16 @@ pub fn page(page: &Page<'_>, reference: &Reference) -> String {
             scenario: &outcome.scenario,
             table,
             end: outcome.flight.end,
-            ground_p3: outcome.scenario.ground_p3,
+            ground_p3: outcome.scenario.ground.map(|ground| ground.p3).or(outcome.scenario.ground_p3),
         })
         .collect();
     let below = html! {
+        @for outcome in &outcomes {
+            @if let Some(replayed) = &outcome.flight.replayed {
+                h2 { "What the log of " (outcome.scenario.name) " says of the replay" }
+                ul { @for sentence in replayed.sentences() { li { (sentence) } } }
+            }
+        }
         h2 { "Measured, and what the reference says" }
         (table(&outcomes, reference))
         p.note {

@@ -131,12 +131,17 @@ function start() {
       strip.setAttribute("role", "img");
       const parts = spans(flight.modes, flight.end).map(([from, to, word]) => [from, to, word || "held", MODES[word] ?? "s1"]);
       const faults = spans(flight.faults, flight.end).filter(([, , word]) => word).map(([from, to, word]) => [from, to, word, "alarm"]);
-      const words = [...parts, ...faults].map(([from, to, word]) => `${word} from ${from.toFixed(1)} to ${to.toFixed(1)} s`);
+      const cables = spans(flight.cables, flight.end).filter(([, , word]) => word === "slack").map(([from, to]) => [from, to, "cable slack", "muted"]);
+      const estimates = spans(flight.estimates, flight.end).filter(([, , word]) => word && word !== "valid").map(([from, to, word]) => [from, to, `rod ${word}`, "s6"]);
+      const below = [...cables, ...estimates];
+      if (below.length > 0) strip.classList.add("two");
+      const words = [...parts, ...faults, ...below].map(([from, to, word]) => `${word} from ${from.toFixed(1)} to ${to.toFixed(1)} s`);
       strip.setAttribute("aria-label", `${flight.name}: ${words.join("; ")}`);
-      for (const [from, to, word, colour] of [...parts, ...faults]) {
+      for (const [from, to, word, colour] of [...parts, ...faults, ...below]) {
         const part = document.createElement("span");
         const share = 100 / (end() || 1);
         part.style.cssText = `left:${from * share}%;width:${Math.max((to - from) * share, 0.3)}%;background:color-mix(in srgb, var(--${colour}) ${colour === "alarm" ? 45 : 22}%, var(--panel))`;
+        if (below.some((other) => other[2] === word)) part.className = "below";
         part.textContent = shown.flights.length > 1 && from === 0 ? `${"AB"[place]}: ${word}` : word;
         part.title = `${word}, ${from.toFixed(2)} to ${to.toFixed(2)} s`;
         strip.append(part);
@@ -147,6 +152,8 @@ function start() {
     events.replaceChildren();
     shown.flights.forEach((flight, place) => {
       const list = [...flight.modes.map(([t, word]) => [t, word || "held"]), ...flight.faults.filter(([, word]) => word).map(([t, word]) => [t, `fault: ${word}`])];
+      list.push(...flight.touches().map(([t, who]) => [t, `${who} on the ground`]));
+      for (const [t, word] of flight.cables.slice(1)) list.push([t, `cable ${word}`]);
       if (flight.lost) list.push([flight.end, flight.lost]);
       list.sort((a, b) => a[0] - b[0]);
       for (const [t, word] of list.slice(0, 60)) {

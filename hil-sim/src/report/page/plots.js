@@ -5,10 +5,12 @@
 const PLOTS = [
   { title: "Distance from the curve d_C, m", log: true, lines: [["d_C", (f) => f.column("d_c")]] },
   { title: "Speed, m/s", lines: [["load", norm("v")], ["UAV", norm("uav_v")]] },
-  { title: "Thrust and tension, N", lines: [["thrust", "thrust"], ["tension", (f) => f.column("lambda").map((value) => -value * f.payload_mass), "lambda"]] },
-  { title: "Torque, N m", lines: [["τ1", "torque1"], ["τ2", "torque2"], ["τ3", "torque3"]] },
+  { title: "Thrust and tension, N", lines: [["thrust", "thrust"], ["tension", (f) => f.column("lambda").map((value) => -value * f.payload_mass), "lambda"], ["thrust logged", "logged_thrust"]] },
+  { title: "Torque, N m", lines: [["τ1", "torque1"], ["τ2", "torque2"], ["τ3", "torque3"], ["τ1 logged", "logged_torque1"], ["τ2 logged", "logged_torque2"], ["τ3 logged", "logged_torque3"]] },
   { title: "Margins: the law is singular at 0", lines: [["q·e3", "q3"], ["q·b3", "q_b3"], ["cos²φ", "cos_phi_squared"], ["reach", "reach"]] },
   { title: "Angles from the vertical, degrees", lines: [["cable", angle(cable)], ["UAV", angle(upright)]] },
+  { title: "Estimated rod less the true one, with ±σ, rad", sigma: "rod_sigma", lines: [["q1", off("est_q", rod, 1), "est_q1"], ["q2", off("est_q", rod, 2), "est_q2"]] },
+  { title: "Estimated load less the true one, with ±σ of navigation, m", sigma: "position_sigma", lines: [["n1", off("est_p", load, 1), "est_p1"], ["n2", off("est_p", load, 2), "est_p2"], ["n3", off("est_p", load, 3), "est_p3"]] },
   { title: "Speed error, m/s", lines: [["h3", "speed_error"]] },
   { title: "Yaw error, rad", lines: [["h4", "yaw_error"]] },
   { title: "Body rate ω, rad/s", lines: [["ω1", "omega1"], ["ω2", "omega2"], ["ω3", "omega3"]] },
@@ -21,6 +23,24 @@ function norm(name) {
   return (flight) => {
     const [a, b, c] = [1, 2, 3].map((axis) => flight.column(name + axis));
     return a.map((part, row) => Math.hypot(part, b[row], c[row]));
+  };
+}
+
+// An axis of the load's place, and of the rod, as they are.
+function load(flight, axis) {
+  return flight.column("p" + axis);
+}
+
+function rod(flight, axis) {
+  const parts = [1, 2, 3].map((part) => flight.column("p" + part).map((value, row) => value - flight.column("uav_p" + part)[row]));
+  return parts[axis - 1].map((value, row) => value / Math.hypot(...parts.map((part) => part[row])));
+}
+
+// An estimate less what is so.
+function off(name, truth, axis) {
+  return (flight) => {
+    const so = truth(flight, axis);
+    return flight.column(name + axis).map((value, row) => value - so[row]);
   };
 }
 
@@ -62,9 +82,9 @@ class Plots {
     this.observer.observe(root);
   }
 
-  add({ title, log, lines }) {
+  add({ title, log, lines, sigma }) {
     const colours = ["s1", "s2", "s3", "s4", "s5", "s6"].map(theme);
-    const tables = [], series = [{ label: "t", value: (_, t) => (t == null ? "–" : `${t.toFixed(2)} s`) }];
+    const tables = [], bands = [], series = [{ label: "t", value: (_, t) => (t == null ? "–" : `${t.toFixed(2)} s`) }];
     this.flights.forEach((flight, place) => {
       const table = [flight.time];
       lines.forEach((line, k) => {
@@ -73,14 +93,23 @@ class Plots {
         table.push(Array.from(values, (value) => (Number.isFinite(value) && (!log || value > 0) ? value : null)));
         series.push({
           label: this.flights.length > 1 ? `${line[0]} ${"AB"[place]}` : line[0],
-          stroke: colours[k],
+          stroke: colours[k % colours.length],
           width: 1.5,
-          dash: place === 1 ? [7, 4] : undefined,
+          dash: place === 1 ? [7, 4] : line[0].endsWith(" logged") ? [3, 3] : undefined,
           points: { show: false },
           spanGaps: this.flights.length > 1,
           value: (_, value) => (value == null ? "–" : Math.abs(value) >= 1e4 || (Math.abs(value) < 1e-3 && value !== 0) ? value.toExponential(2) : value.toPrecision(4)),
         });
       });
+      if (table.length > 1 && sigma && flight.has(sigma)) {
+        // Of one axis: the two together have √2 of it.
+        const one = flight.column(sigma).map((value) => value * Math.SQRT1_2);
+        for (const [sign, end] of [["+", 1], ["−", -1]]) {
+          table.push(Array.from(one, (value) => (Number.isFinite(value) ? end * value : null)));
+          series.push({ label: `${sign}σ`, stroke: theme("muted"), width: 0.75, dash: [2, 3], points: { show: false }, spanGaps: this.flights.length > 1, value: (_, value) => (value == null ? "–" : value.toPrecision(3)) });
+        }
+        bands.push({ series: [series.length - 2, series.length - 1], fill: `${theme("muted")}2e` });
+      }
       if (table.length > 1) tables.push(table);
     });
     if (tables.length === 0) return;
@@ -93,6 +122,7 @@ class Plots {
       width: 400,
       height: 200,
       series,
+      bands,
       axes: [{ ...axis, values: (_, ticks) => ticks.map((t) => `${+t.toFixed(6)} s`) }, { ...axis, size: 64, values: (_, ticks) => ticks.map((value) => label(value, log)) }],
       scales: { x: { time: false, min: this.whole[0], max: this.whole[1] }, y: log ? { distr: 3, range: (_, low, high) => decades(low, high) } : { range: (_, low, high) => range(low, high) } },
       cursor: { sync: { key: "time" }, drag: { x: true, y: false }, points: { size: 6 } },
@@ -129,6 +159,7 @@ class Plots {
     };
     for (const [from, to, word] of spans(flight.modes, flight.end)) if (MODES[word]) fill(from, to, theme(MODES[word]), word ? 0.1 : 0.3);
     for (const [from, to, word] of spans(flight.faults, flight.end)) if (word) fill(from, to, theme("alarm"), 0.16);
+    for (const [from, to, word] of spans(flight.cables, flight.end)) if (word === "slack") fill(from, to, theme("muted"), 0.14);
     pen.restore();
   }
 

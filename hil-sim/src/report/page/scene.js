@@ -106,6 +106,7 @@ class Scene {
     this.drawGround();
     this.drawCurve();
     this.drawTrail(now);
+    this.drawTouches(now);
     this.drawShadow(now);
     if (now.uav[2] > now.load[2]) { this.drawUav(now); this.drawCable(now); this.drawLoad(now); }
     else { this.drawLoad(now); this.drawCable(now); this.drawUav(now); }
@@ -180,6 +181,17 @@ class Scene {
     pen.strokeStyle = theme("text");
     pen.lineWidth = 1.5;
     pen.strokeRect(x - 4, y - 4, 8, 8);
+  }
+
+  // Where load and UAV have come to the ground until now.
+  drawTouches(now) {
+    const size = 0.03 * this.radius;
+    for (const [t, who] of this.flight.touches()) {
+      if (t > now.t) break;
+      const at = this.flight.at(t), [n1, n2] = who === "load" ? at.load : at.uav;
+      const ring = Array.from({ length: 25 }, (_, k) => [n1 + size * Math.cos((k * Math.PI) / 12), n2 + size * Math.sin((k * Math.PI) / 12), this.ground]);
+      this.line(ring, theme(who === "load" ? "load" : "uav"), 2);
+    }
   }
 
   // Where the vehicle is above the ground.
@@ -270,6 +282,9 @@ class Scene {
       this.text(`wind ${wind.toFixed(1)} m/s`, this.width - 112, 92, text);
     }
     if (now.fault) this.text(now.fault, 12, 22, theme("alarm"));
-    else if (now.slack) this.text("cable slack", 12, 22, theme("alarm"));
+    else {
+      const words = [now.slack ? "cable slack" : "", now.ground ? `on the ground: ${now.ground}` : ""].filter(Boolean);
+      if (words.length > 0) this.text(words.join(", "), 12, 22, theme(now.slack ? "alarm" : "text"));
+    }
   }
 }
