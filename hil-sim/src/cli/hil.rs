@@ -5,6 +5,7 @@ use hil_sim::describe::scenario::FIGURES;
 use hil_sim::fly::flight::Control;
 use hil_sim::hil::{self, Arguments, Flown};
 use hil_sim::report;
+use hil_sim::report::live::Live;
 use std::fs;
 use std::io::{self, Write};
 
@@ -13,6 +14,7 @@ use super::{Common, Ended, Logs, fly, load, many};
 pub const EXAMPLES: &str = "Examples:
   hil-sim hil --port /dev/ttyUSB0                      the paper's figures on a board
   hil-sim hil fig3a --port /dev/ttyUSB0 --real-time    by the board's own clock
+  hil-sim hil fig3a --port /dev/ttyUSB0 --real-time --live    and watch it in a browser
   hil-sim hil fig3a --connect udp:192.168.1.7:14550    over a wireless bridge
   hil-sim hil fig3a --emulate firmware/target/thumbv7em-none-eabihf/release/firmware";
 
@@ -31,8 +33,20 @@ pub fn fly(common: &Common, arguments: &Arguments, logs: &Logs) -> Ended {
     common.tried()?;
     let planned = scenarios.len();
     let bar = many::progress_bar(common.quiet, scenarios.iter().map(|scenario| scenario.duration_s).sum());
-    let flown = hil::fly_all(arguments, scenarios, Control { stop: &stop, progress: &many::progress(&bar) })?;
+    let control = Control { stop: &stop, progress: &many::progress(&bar) };
+    let live = arguments.live.map(Live::serve).transpose().map_err(|error| format!("--live: {error}"))?;
+    if let Some(live) = live.as_ref().filter(|_| !common.quiet) {
+        eprintln!("hil-sim: live at http://{}", live.address());
+    }
+    let flown = hil::fly_all(arguments, scenarios, control, &mut |scenario, log, end| {
+        if let Some(live) = &live {
+            live.show(scenario, log, end);
+        }
+    })?;
     bar.finish_and_clear();
+    if let Some(live) = live {
+        live.finish();
+    }
     let Flown { outcomes, links, failure } = flown;
 
     let reference = Reference::builtin();

@@ -76,6 +76,20 @@ pub fn fly_on(
     twin: bool,
     control: Control<'_>,
 ) -> Result<Flight, Invalid> {
+    fly_watched(scenario, pilot, twin, control, &mut |_| {})
+}
+
+/// The same, where `see` sees the log whenever it has a sample more.
+///
+/// # Errors
+/// As [`fly_on`].
+pub fn fly_watched(
+    scenario: &Scenario,
+    pilot: &mut impl Answers,
+    twin: bool,
+    control: Control<'_>,
+    see: &mut dyn FnMut(&[Sample]),
+) -> Result<Flight, Invalid> {
     let twin = if twin { Some(Pilot::<f64>::new(&scenario.controller)?) } else { None };
     let begun = ThreadTime::now();
     let mut pilot = Twinned::new(pilot, twin, &scenario.controller);
@@ -112,6 +126,7 @@ pub fn fly_on(
                 contact: Contact::of(moment.body),
                 logged: None,
             });
+            see(&log);
         }
     });
     let (deviation, twin_cpu) = pilot.finish();

@@ -13,6 +13,7 @@ use crate::describe::scenario::Scenario;
 use crate::fly::batch::Outcome;
 use crate::fly::flight::{Control, End};
 use crate::fly::run;
+use crate::fly::sample::Sample;
 
 /// Where the target is: one of these.
 #[derive(Args, Clone, Debug)]
@@ -58,6 +59,10 @@ pub struct Arguments {
     /// are logged: for slow lines.
     #[arg(long)]
     pub no_telemetry: bool,
+    /// Show the flights while they fly, in the report's page at http://127.0.0.1:PORT; any free port
+    /// if it is 0.
+    #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8420")]
+    pub live: Option<u16>,
     /// Seconds without an answer after which the target is lost.
     #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = patience)]
     pub patience: f64,
@@ -120,12 +125,20 @@ pub struct Flown {
     pub failure: Option<HilError>,
 }
 
-/// Connects and flies `scenarios` one after the other.
+/// Sees a flight's log whenever it has a sample more, and once more with its end.
+pub type See<'a> = dyn FnMut(&Scenario, &[Sample], Option<End>) + 'a;
+
+/// Connects and flies `scenarios` one after the other, while `see` sees them.
 ///
 /// # Errors
 /// The target can't be reached, or can't fly one of the scenarios: that is found out before the
 /// first. A target that is lost ends the flights; those before are kept.
-pub fn fly_all(arguments: &Arguments, scenarios: Vec<Scenario>, control: Control<'_>) -> Result<Flown, HilError> {
+pub fn fly_all(
+    arguments: &Arguments,
+    scenarios: Vec<Scenario>,
+    control: Control<'_>,
+    see: &mut See<'_>,
+) -> Result<Flown, HilError> {
     let options = Options {
         pace: if arguments.real_time { Pace::RealTime } else { Pace::Lockstep },
         patience: Duration::from_secs_f64(arguments.patience),
@@ -149,7 +162,7 @@ pub fn fly_all(arguments: &Arguments, scenarios: Vec<Scenario>, control: Control
     };
     let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
     for scenario in scenarios {
-        match fly_one(&mut target, scenario, (options.telemetry, control), &mut flown) {
+        match fly_one(&mut target, scenario, (options.telemetry, control), see, &mut flown) {
             Ok(true) => {}
             Ok(false) => break,
             Err(error) if flown.outcomes.is_empty() => return Err(error),
@@ -167,12 +180,14 @@ fn fly_one(
     target: &mut Target,
     scenario: Scenario,
     (twin, control): (bool, Control<'_>),
+    see: &mut See<'_>,
     flown: &mut Flown,
 ) -> Result<bool, HilError> {
     target.prepare(&scenario)?;
     let begun = Instant::now();
-    let mut flight =
-        run::fly_on(&scenario, target, twin, control).map_err(|error| HilError::Unsupported(error.to_string()))?;
+    let mut flight = run::fly_watched(&scenario, target, twin, control, &mut |log| see(&scenario, log, None))
+        .map_err(|error| HilError::Unsupported(error.to_string()))?;
+    see(&scenario, &flight.log, Some(flight.end));
     let elapsed_s = begun.elapsed().as_secs_f64();
     let end = flight.end;
     if end == End::Interrupted {

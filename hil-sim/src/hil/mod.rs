@@ -20,7 +20,7 @@ mod statistics;
 mod target;
 mod wire;
 
-pub use command::{Arguments, Flown, LinkReport, fly_all, lateness, table};
+pub use command::{Arguments, Flown, LinkReport, See, fly_all, lateness, table};
 pub use emulator::Emulator;
 pub use error::HilError;
 pub use options::{Options, Pace};

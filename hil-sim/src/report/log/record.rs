@@ -6,7 +6,7 @@ use crate::describe::scenario::{Law, Scenario};
 use crate::fly::batch::Outcome;
 use crate::fly::flight::Moment;
 use crate::fly::pilot::{Decision, Telemetry};
-use crate::fly::sample::{Contact, Seen};
+use crate::fly::sample::{Contact, Sample, Seen};
 use crate::world::Bodies;
 
 /// One logged instant of a flight.
@@ -65,18 +65,20 @@ impl Record {
     /// The log of a flight.
     #[must_use]
     pub fn of_flight(Outcome { scenario, flight, .. }: &Outcome) -> Vec<Self> {
-        let samples = flight.log.iter();
-        let record = samples.map(|sample| {
-            let state = State::from_paper(&sample.x);
-            let uav = [sample.uav_position, sample.uav_velocity];
-            Self {
-                seen: sample.seen,
-                contact: sample.contact,
-                logged: sample.logged,
-                ..Self::new(scenario, sample.t_s, state, uav, Some(sample.distance_m), sample.decision)
-            }
-        });
-        record.collect()
+        flight.log.iter().map(|sample| Self::of_sample(scenario, sample)).collect()
+    }
+
+    /// One sample of such a log.
+    #[must_use]
+    pub fn of_sample(scenario: &Scenario, sample: &Sample) -> Self {
+        let state = State::from_paper(&sample.x);
+        let uav = [sample.uav_position, sample.uav_velocity];
+        Self {
+            seen: sample.seen,
+            contact: sample.contact,
+            logged: sample.logged,
+            ..Self::new(scenario, sample.t_s, state, uav, Some(sample.distance_m), sample.decision)
+        }
     }
 
     /// What a watcher of a flight of `scenario` sees.

@@ -20,6 +20,14 @@ pub struct Shown<'a> {
     pub ground_p3: Option<f64>,
 }
 
+impl<'a> Shown<'a> {
+    /// A flight of `scenario` over its own ground.
+    pub fn of(scenario: &'a Scenario, table: &'a Table, end: End) -> Self {
+        let ground_p3 = scenario.ground.map(|ground| ground.p3).or(scenario.ground_p3);
+        Self { scenario, table, end, ground_p3 }
+    }
+}
+
 /// Bytes that the flights of one page may have between them; samples are left out evenly to keep to
 /// it.
 const BUDGET: usize = 1_600_000;

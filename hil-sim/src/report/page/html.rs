@@ -34,15 +34,8 @@ pub struct Page<'a> {
 pub fn page(page: &Page<'_>, reference: &Reference) -> String {
     let Page { heading, flights, figures, link } = page;
     let outcomes: Vec<&Outcome> = flights.iter().map(|(outcome, _)| *outcome).collect();
-    let shown: Vec<Shown<'_>> = flights
-        .iter()
-        .map(|(outcome, table)| Shown {
-            scenario: &outcome.scenario,
-            table,
-            end: outcome.flight.end,
-            ground_p3: outcome.scenario.ground.map(|ground| ground.p3).or(outcome.scenario.ground_p3),
-        })
-        .collect();
+    let shown: Vec<Shown<'_>> =
+        flights.iter().map(|(outcome, table)| Shown::of(&outcome.scenario, table, outcome.flight.end)).collect();
     let below = html! {
         @for outcome in &outcomes {
             @if let Some(replayed) = &outcome.flight.replayed {
@@ -67,20 +60,33 @@ pub fn page(page: &Page<'_>, reference: &Reference) -> String {
 
 /// A page of flights to play, with more below them.
 pub fn flights_page(heading: &str, link: Option<(&str, &str)>, shown: &[Shown<'_>], below: &Markup) -> String {
+    let above = html! {
+        @if let Some((file, other)) = link { p { a href=(file) { (other) } } }
+        @for Shown { table, end, .. } in shown {
+            @if let Some(failure) = failure(*end, table) {
+                p.lost { (failure) span { (table.name) @if !table.title.is_empty() { ": " (table.title) } } }
+            }
+        }
+    };
+    whole(heading, false, &above, &json(shown), below)
+}
+
+/// The page of flights that are being flown, `flights` as its script takes them.
+pub fn live_page(flights: &str) -> String {
+    let above = html! { p #live role="status" { "Waiting for the first sample" } };
+    whole("Flying now", true, &above, flights, &html! {})
+}
+
+fn whole(heading: &str, is_live: bool, above: &Markup, flights: &str, below: &Markup) -> String {
     html! {
         (DOCTYPE)
-        html lang="en" {
+        html lang="en" data-live[is_live] {
             (head(heading))
             style { (PreEscaped(PLOTTER[1])) }
             body {
                 main {
                     h1 { (heading) }
-                    @if let Some((file, other)) = link { p { a href=(file) { (other) } } }
-                    @for Shown { table, end, .. } in shown {
-                        @if let Some(failure) = failure(*end, table) {
-                            p.lost { (failure) span { (table.name) @if !table.title.is_empty() { ": " (table.title) } } }
-                        }
-                    }
+                    (above)
                     (controls())
                     section #scenes .scenes aria-label="Flights in space" {}
                     div.scale {
@@ -105,7 +111,7 @@ pub fn flights_page(heading: &str, link: Option<(&str, &str)>, shown: &[Shown<'_
                         "Inertial axes n1, n2, n3 with n3 pointing down; p is the payload's position. Arrows on the rotors are their thrusts; the front is in blue."
                     }
                 }
-                script type="application/json" id="flights" { (PreEscaped(json(shown))) }
+                script type="application/json" id="flights" { (PreEscaped(flights)) }
                 script { (PreEscaped(PLOTTER[0])) }
                 script { @for script in SCRIPTS { (PreEscaped(script)) } }
             }

@@ -2,9 +2,11 @@
 // The page: which flights are shown, and the time that all of it shows.
 
 function start() {
-  const flights = JSON.parse(document.getElementById("flights").textContent).map((given) => new Flight(given));
+  const read = (text) => JSON.parse(text).map((given) => new Flight(given));
+  let flights = read(document.getElementById("flights").textContent);
+  const isLive = "live" in document.documentElement.dataset;
   // An interrupted run has a report of no flight.
-  if (flights.length === 0) return;
+  if (flights.length === 0 && !isLive) return;
   const element = (id) => document.getElementById(id);
   const camera = new Camera();
   const shown = { flights: [], scenes: [], plots: null, t: 0, playing: false, last: 0 };
@@ -19,6 +21,7 @@ function start() {
   }
 
   function go(t) {
+    if (!shown.plots) return;
     shown.t = Math.min(Math.max(t, 0), end());
     slider.value = String(shown.t);
     clock.textContent = `${shown.t.toFixed(2)} s of ${end().toFixed(1)} s`;
@@ -29,6 +32,7 @@ function start() {
   }
 
   function setPlaying(playing) {
+    if (!shown.plots) return;
     if (playing && shown.t >= end()) go(0);
     shown.playing = playing;
     shown.last = performance.now();
@@ -167,6 +171,7 @@ function start() {
   }
 
   function show() {
+    if (flights.length === 0) return;
     const [first, second] = ["first", "second"].map((id) => element(id).value);
     shown.flights = [flights[Number(first)], second === "" ? null : flights[Number(second)]].filter(Boolean);
     element("scenes").replaceChildren();
@@ -180,14 +185,44 @@ function start() {
     go(Math.min(shown.t, end()));
   }
 
-  for (const id of ["first", "second"]) {
-    flights.forEach((flight, place) => element(id).append(new Option(flight.lost ? `${flight.name} (lost)` : flight.name, String(place))));
-    element(id).addEventListener("change", show);
+  function choices() {
+    for (const id of ["first", "second"]) {
+      const from = element(id).options.length - (id === "second" ? 1 : 0);
+      flights.slice(from).forEach((flight, place) => element(id).append(new Option(flight.lost ? `${flight.name} (lost)` : flight.name, String(from + place))));
+    }
+    element("compare").hidden = flights.length < 2;
   }
+
+  // While they fly: what has come since, at the end of it unless somebody looks at what was before.
+  function listen() {
+    const events = new EventSource("events");
+    const fetched = async () => {
+      const before = flights.length, isFollowing = before === 0 || (!shown.playing && shown.t >= end() - 0.01);
+      flights = read(await (await fetch("flights.json")).text());
+      if (flights.length === 0) return;
+      const focused = [...document.querySelectorAll(".scene canvas")].indexOf(document.activeElement);
+      const zoomed = isFollowing ? null : shown.plots?.shown;
+      choices();
+      if (flights.length > before && isFollowing) element("first").value = String(flights.length - 1);
+      if (isFollowing) shown.t = Infinity;
+      show();
+      if (zoomed) shown.plots.between(...zoomed);
+      document.querySelectorAll(".scene canvas")[focused]?.focus();
+      element("live").textContent = `Flying ${flights[flights.length - 1].name}`;
+    };
+    events.addEventListener("message", fetched);
+    events.addEventListener("over", async () => {
+      events.close();
+      await fetched();
+      element("live").textContent = "The flights are over";
+    });
+  }
+
+  choices();
+  for (const id of ["first", "second"]) element(id).addEventListener("change", show);
   // The flight that was lost is what is looked for; two flights are there to be compared.
   element("first").value = String(Math.max(flights.findIndex((flight) => flight.lost), 0));
   if (flights.length === 2) element("second").value = element("first").value === "0" ? "1" : "0";
-  if (flights.length < 2) element("compare").hidden = true;
   play.addEventListener("click", () => setPlaying(!shown.playing));
   slider.addEventListener("input", () => { setPlaying(false); go(Number(slider.value)); });
   element("follow").addEventListener("click", (event) => {
@@ -201,7 +236,7 @@ function start() {
     camera.zoom = 1;
     draw();
   });
-  element("unzoom").addEventListener("click", () => { shown.plots.zoom(Infinity, 0); camera.zoom = 1; draw(); });
+  element("unzoom").addEventListener("click", () => { shown.plots?.zoom(Infinity, 0); camera.zoom = 1; draw(); });
   const keys = {
     " ": () => setPlaying(!shown.playing), ArrowLeft: () => go(shown.t - 0.1), ArrowRight: () => go(shown.t + 0.1),
     PageDown: () => go(shown.t + 0.05 * end()), PageUp: () => go(shown.t - 0.05 * end()), Home: () => go(0), End: () => go(end()),
@@ -211,17 +246,22 @@ function start() {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.matches("input, select, textarea, button, a")) return;
     const act = keys[event.key];
-    if (!act) return;
+    if (!act || !shown.plots) return;
     event.preventDefault();
     act();
   });
-  const again = () => { shown.plots.remove(); shown.plots = new Plots(element("plots"), shown.flights, go); shown.plots.fit(); go(shown.t); };
+  const again = () => { if (!shown.plots) return; shown.plots.remove(); shown.plots = new Plots(element("plots"), shown.flights, go); shown.plots.fit(); go(shown.t); };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", again);
   // Paper is white.
   addEventListener("beforeprint", () => { setPlaying(false); document.documentElement.classList.add("paper"); again(); });
   addEventListener("afterprint", () => { document.documentElement.classList.remove("paper"); again(); });
   addEventListener("resize", draw);
+  if (isLive) {
+    shown.t = Infinity;
+    element("first").value = String(flights.length - 1);
+  }
   show();
+  if (isLive) listen();
   performance.mark("ready");
 }
 

@@ -4,9 +4,9 @@
 mod data;
 mod html;
 
-pub(crate) use data::Shown;
-pub(crate) use html::flights_page;
+pub(crate) use data::{Shown, json as flights_json};
 pub use html::{Page, page};
+pub(crate) use html::{flights_page, live_page};
 
 use maud::{Markup, PreEscaped, html};
 
@@ -20,6 +20,8 @@ pub(crate) fn head(title: &str) -> Markup {
             meta charset="utf-8";
             meta name="viewport" content="width=device-width, initial-scale=1";
             title { (title) }
+            // None, rather than a browser's own request for one.
+            link rel="icon" href="data:,";
             style { (PreEscaped(STYLE)) }
         }
     }

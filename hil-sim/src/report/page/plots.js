@@ -177,7 +177,11 @@ class Plots {
     const [from, to] = this.shown ?? this.whole;
     const width = Math.min((to - from) * share, this.whole[1] - this.whole[0]);
     const start = Math.min(Math.max(t - 0.5 * width, this.whole[0]), this.whole[1] - width);
-    this.plots[0]?.setScale("x", { min: start, max: start + width });
+    this.between(start, start + width);
+  }
+
+  between(min, max) {
+    this.plots[0]?.setScale("x", { min, max });
   }
 
   fit() {

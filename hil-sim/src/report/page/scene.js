@@ -216,7 +216,10 @@ class Scene {
     const sag = Math.sqrt(Math.max(this.flight.rod_length ** 2 - now.length ** 2, 0)) * 0.5 + 0.08 * this.flight.rod_length;
     const points = Array.from({ length: 17 }, (_, k) => {
       const u = k / 16;
-      return now.uav.map((part, axis) => part + u * (now.load[axis] - part) + (axis === 2 ? 4 * u * (1 - u) * sag : 0));
+      const straight = now.uav.map((part, axis) => part + u * (now.load[axis] - part));
+      // What would hang below the ground lies on it.
+      const hanging = Math.min(straight[2] + 4 * u * (1 - u) * sag, Math.max(this.ground, straight[2]));
+      return [straight[0], straight[1], hanging];
     });
     this.line(points, theme("alarm"), 2, [5, 5]);
   }
