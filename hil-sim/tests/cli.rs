@@ -414,3 +414,28 @@ fn a_mission_becomes_a_scenario_that_is_checked_and_flown() {
     assert!(!refused.status.success() && text(&refused.stderr).contains("leg"), "{}", text(&refused.stderr));
     assert!(!folder.join("none").exists());
 }
+
+#[test]
+fn a_log_is_replayed_beside_it_and_named_where_it_can_not_be() {
+    let folder = folder("replay");
+    fs::write(folder.join("short.toml"), SHORT).expect("a file");
+    let run = |arguments: &[&str]| program().args(arguments).current_dir(&folder).output().expect("it starts");
+    assert!(run(&["run", "short.toml", "--quiet"]).status.success());
+    let flown = fs::read(folder.join("out/short.csv")).expect("a log");
+
+    let unknown = text(&run(&["replay", "out/short.csv"]).stderr);
+    assert!(unknown.contains("no built-in scenario is called short") && unknown.contains("--with"), "{unknown}");
+    let replayed = run(&["replay", "out/short.csv", "--with", "short.toml"]);
+    assert!(replayed.status.success(), "{}", text(&replayed.stderr));
+    let said = text(&replayed.stdout);
+    assert!(said.contains("thrust, replayed less logged") && said.contains("no f1 … f3"), "{said}");
+    assert_eq!(fs::read(folder.join("out/short.csv")).expect("a log"), flown);
+    let again = fs::read_to_string(folder.join("out/short-replay.csv")).expect("a log");
+    assert!(again.lines().next().is_some_and(|names| names.contains(",logged_thrust,")));
+    let summary = fs::read_to_string(folder.join("out/summary.json")).expect("a summary");
+    assert!(summary.contains("\"thrust_n\""), "{summary}");
+
+    fs::write(folder.join("poor.csv"), "t_s,p1,p2,p3\n0,1,2,3\n").expect("a file");
+    let poor = text(&run(&["replay", "poor.csv", "--with", "short.toml"]).stderr);
+    assert!(poor.contains("poor.csv: the log lacks uav_p1") && poor.contains("vehicle_attitude"), "{poor}");
+}

@@ -81,7 +81,7 @@ fn the_estimate_is_replayed_from_the_motion_of_the_uav() {
     // Readings of 2 ms every 10 ms, and a rod that was told to hang: some degrees until it is found,
     // then what a filter knows of a load whose wind it has to find.
     assert!(found.rod_deg.unwrap().rms < 3.0, "{found:?}");
-    for sample in outcome.flight.log.iter().filter(|sample| sample.t_s > 10.0 && sample.decision.is_some()) {
+    for sample in outcome.flight.log.iter().filter(|sample| sample.t_s > 10.0 && sample.logged.is_some()) {
         let (seen, x) = (sample.seen.unwrap(), &sample.x);
         let apart = seen.position - controller::Vector3::new(x[0], x[1], x[2]);
         assert!(apart.dot(&apart).sqrt() < 0.1, "{} s: {apart:?}", sample.t_s);

@@ -155,6 +155,8 @@ async function differs(page, data, name) {
 const ground = await open("ground.html", "light");
 await ground.page.addStyleTag({ content: ".scene canvas { width: 640px !important; height: 400px !important }" });
 await ground.page.click("#follow");
+await ground.page.locator("h1").click();
+for (let k = 0; k < 7; k += 1) await ground.page.keyboard.press("e");
 await ground.page.evaluate(() => dispatchEvent(new Event("resize")));
 const sceneAt = async (t) => {
   await seek(ground.page, t);
@@ -198,7 +200,7 @@ await new Promise((listens) => target.stderr.once("data", listens));
 const flying = spawn(program, ["hil", "fig3a", "--connect", place, "--real-time", "--live=0", "--out", join(out, "live")]);
 const address = await new Promise((found, failed) => {
   let heard = "";
-  flying.stderr.on("data", (text) => { heard += text; const [match] = heard.match(/http:\S+/) ?? []; if (match) found(match); });
+  flying.stderr.on("data", (text) => { heard += text; const [match] = heard.match(/http:\S+(?=\n)/) ?? []; if (match) found(match); });
   flying.on("exit", () => failed(new Error(heard)));
 });
 const live = await browser.newContext({ viewport: { width: 1300, height: 1000 } });

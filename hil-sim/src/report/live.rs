@@ -66,7 +66,7 @@ impl Live {
             for stream in listener.incoming().flatten() {
                 let shared = Arc::clone(&served);
                 // A browser that goes away ends its own thread.
-                thread::spawn(move || drop(answer(stream, &shared)));
+                thread::spawn(move || drop(answer(&stream, &shared)));
             }
         });
         Ok(Self { shared, address })
@@ -108,10 +108,10 @@ fn locked(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
 }
 
 /// Answers one request.
-fn answer(stream: TcpStream, shared: &Mutex<Shared>) -> io::Result<()> {
+fn answer(stream: &TcpStream, shared: &Mutex<Shared>) -> io::Result<()> {
     stream.set_read_timeout(Some(PATIENCE))?;
     stream.set_write_timeout(Some(PATIENCE))?;
-    let mut reader = BufReader::new(&stream);
+    let mut reader = BufReader::new(stream);
     let mut request = String::new();
     io::Read::take(&mut reader, LINE).read_line(&mut request)?;
     let mut line = String::new();
@@ -124,18 +124,20 @@ fn answer(stream: TcpStream, shared: &Mutex<Shared>) -> io::Result<()> {
     }
     let mut parts = request.split_ascii_whitespace();
     match (parts.next(), parts.next()) {
-        (Some("GET"), Some("/")) => send(&stream, "200 OK", "text/html; charset=utf-8", &live_page(&json(shared))),
+        (Some("GET"), Some("/")) => send(stream, "200 OK", "text/html; charset=utf-8", &live_page(&json(shared))),
         (Some("GET"), Some("/flights.json")) => {
             let is_over = locked(shared).is_over;
-            send(&stream, "200 OK", "application/json", &json(shared))?;
+            send(stream, "200 OK", "application/json", &json(shared))?;
             if is_over {
                 let mut shared = locked(shared);
                 shared.waiting = shared.waiting.saturating_sub(1);
             }
             Ok(())
         }
-        (Some("GET"), Some("/events")) => events(&stream, shared),
-        _ => send(&stream, "404 Not Found", "text/plain", "not found\n"),
+        (Some("GET"), Some("/events")) => events(stream, shared),
+        // What browsers ask for by themselves.
+        (Some("GET"), Some("/favicon.ico")) => send(stream, "204 No Content", "text/plain", ""),
+        _ => send(stream, "404 Not Found", "text/plain", "not found\n"),
     }
 }
 

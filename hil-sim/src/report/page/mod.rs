@@ -20,8 +20,6 @@ pub(crate) fn head(title: &str) -> Markup {
             meta charset="utf-8";
             meta name="viewport" content="width=device-width, initial-scale=1";
             title { (title) }
-            // None, rather than a browser's own request for one.
-            link rel="icon" href="data:,";
             style { (PreEscaped(STYLE)) }
         }
     }
