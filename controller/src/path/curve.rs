@@ -1,5 +1,8 @@
 //! What a curve answers: where the payload is with respect to it.
 
+// As in series.rs: indices run over compile-time orders.
+#![allow(clippy::indexing_slicing, clippy::needless_range_loop)]
+
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
@@ -109,17 +112,60 @@ pub(super) fn velocity<T: Real>(position: &PositionSeries<T>) -> [Series<T, 6>; 
 }
 
 /// a·b.
-#[inline]
+#[inline(always)]
 pub(super) fn dot<T: Real, const N: usize>(a: &[Series<T, N>; 3], b: &[Series<T, N>; 3]) -> Series<T, N> {
-    let ([a1, a2, a3], [b1, b2, b3]) = (*a, *b);
-    a1 * b1 + a2 * b2 + a3 * b3
+    let mut sum = Sum::empty();
+    a.iter().zip(b).for_each(|(a, b)| sum.add_product(a, b));
+    sum.0
 }
 
 /// |a|².
-#[inline]
+#[inline(always)]
 pub(super) fn norm_squared<T: Real, const N: usize>(a: &[Series<T, N>; 3]) -> Series<T, N> {
-    let [a1, a2, a3] = *a;
-    a1.square() + a2.square() + a3.square()
+    let mut sum = Sum::empty();
+    a.iter().for_each(|a| sum.add_square(a));
+    sum.0
+}
+
+/// A sum over the axes, one after the other, so that the numbers at work fit the registers.
+pub(super) struct Sum<T, const N: usize>(pub(super) Series<T, N>);
+
+impl<T: Real, const N: usize> Sum<T, N> {
+    #[inline(always)]
+    pub(super) fn empty() -> Self {
+        Self(Series([T::EMPTY_SUM; N]))
+    }
+
+    /// Adds a·b.
+    #[inline(always)]
+    pub(super) fn add_product(&mut self, Series(a): &Series<T, N>, Series(b): &Series<T, N>) {
+        for j in 0..N {
+            for k in j..N {
+                self.0.0[k] += a[k - j] * b[j];
+            }
+        }
+    }
+
+    /// Adds a · `factor`.
+    #[inline(always)]
+    pub(super) fn add_multiple(&mut self, Series(a): &Series<T, N>, factor: T) {
+        for k in 0..N {
+            self.0.0[k] += a[k] * factor;
+        }
+    }
+
+    /// Adds a², each product of two coefficients once.
+    #[inline(always)]
+    pub(super) fn add_square(&mut self, Series(a): &Series<T, N>) {
+        for k in 0..N {
+            for j in 0..k.div_ceil(2) {
+                self.0.0[k] += (a[j] + a[j]) * a[k - j];
+            }
+            if k % 2 == 0 {
+                self.0.0[k] += a[k / 2] * a[k / 2];
+            }
+        }
+    }
 }
 
 /// a × b.

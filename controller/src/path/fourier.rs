@@ -1,12 +1,15 @@
 //! Any smooth closed curve, as a Fourier series with normal-plane coordinates about the nearest
 //! point.
 
+// Indices are axes and compile-time orders.
+#![allow(clippy::indexing_slicing)]
+
 use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
 use crate::path::PositionSeries;
-use crate::path::curve::{dot, norm_squared, now, velocity};
-use crate::path::nearest::{Advance, Local, Nearest, solve, track};
+use crate::path::curve::{Sum, now};
+use crate::path::nearest::{Local, Nearest, track};
 use crate::path::{Curve, Curved, Harmonics, Located};
 
 /// Newton steps from the last sample's nearest point to the present one, always all of them.
@@ -52,7 +55,8 @@ pub struct FourierPath<T, const K: usize> {
     sigma: T,
     /// c less a0 about it.
     local: Local<T>,
-    advance: Advance<T>,
+    /// Of the last sample.
+    nearest: Nearest<T>,
 }
 
 impl<T: Real, const K: usize> FourierPath<T, K> {
@@ -64,12 +68,14 @@ impl<T: Real, const K: usize> FourierPath<T, K> {
     pub fn new(harmonics: Harmonics<T, K>) -> Result<Self, OutOfRange<T>> {
         harmonics.check()?;
         let reference = Vector3::from(harmonics.reference);
+        let mut local = [Vector3::zeros(); 8];
+        harmonics.local(T::zero(), &mut local);
         Ok(Self {
             harmonics,
             reference: reference * (T::one() / reference.dot(&reference).sqrt()),
             sigma: T::zero(),
-            local: harmonics.local(T::zero()),
-            advance: Advance::none(),
+            local,
+            nearest: Nearest::none(),
         })
     }
 
@@ -98,48 +104,65 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
         let advanced =
             self.sigma + track::<_, NEWTON_STEPS>(&self.local, &(offset - last), Harmonics::<T, K>::longest_step());
         self.sigma = advanced.wrap_angle();
-        self.local = self.harmonics.local(self.sigma);
-        let [point, c_1, half_c_2, ..] = self.local;
-        let c_2 = half_c_2 + half_c_2;
+        self.harmonics.local(self.sigma, &mut self.local);
+        let [point, ..] = &self.local;
         let r = offset - point;
-        let Nearest { error, first, advance, speed_squared, divisor } = solve(position, &r, &self.local);
-        self.advance = advance;
+        self.nearest.solve(position, &r, &self.local);
+        let Nearest { error, first, .. } = &self.nearest;
 
-        // h1 = (r·e) g and h2 = (r·w)/|w| with w = c′ × e and g = |c′|/|w|.
+        // h1 = (r·e) |c′|/|w| and h2 = (r·w)/|w| with w = c′ × e.
         let e = &self.reference;
         let [d1, d2, d3] = first;
-        let w = [d2 * e.z - d3 * e.y, d3 * e.x - d1 * e.z, d1 * e.y - d2 * e.x];
-        let per_w = norm_squared(&w).rsqrt();
-        let length = norm_squared(&first).sqrt();
-        let g = length * per_w;
-        let [r1, r2, r3] = error;
-        let height = r1 * e.x + r2 * e.y + r3 * e.z;
+        let (mut across, mut square) = (Sum::empty(), Sum::empty());
+        // c′ and e along the axis that follows, and along the last of the three.
+        let mut next = (d2, e.y);
+        for (r, last) in error.iter().zip([(d3, e.z), (d1, e.x), (d2, e.y)]) {
+            let w = *next.0 * last.1 - *last.0 * next.1;
+            across.add_product(r, &w);
+            square.add_square(&w);
+            next = last;
+        }
+        let w_length = square.0.sqrt();
+        let h2 = across.0 / w_length;
+
+        let (mut height, mut square, mut speed) = (Sum::empty(), Sum::empty(), Sum::empty());
+        for (((r, d), e), p) in error.iter().zip(first).zip(e).zip(position) {
+            height.add_multiple(r, *e);
+            square.add_square(d);
+            speed.add_product(&d.truncate(), &p.differentiate());
+        }
+        let length = square.0.sqrt();
+        let h1 = height.0 * length / w_length;
+        let length = length.truncate();
+        let speed = speed.0 / length;
 
         // Gradients: r moves by dp − c′ dσ, c′ by c″ dσ, with ∇σ = c′/divisor.
+        let Nearest { speed_squared, divisor, .. } = self.nearest;
+        let [_, c_1, half_c_2, ..] = self.local;
+        let c_2 = half_c_2 + half_c_2;
         let grad_sigma = c_1 * (T::one() / divisor);
-        let (w_0, per_w_0, g_0) = (now(&w), per_w.value(), g.value());
-        let w_1 = c_2.cross(e);
+        let (w_0, w_1) = (c_1.cross(e), c_2.cross(e));
+        let per_w_0 = T::one() / w_length.value();
+        let g_0 = length.value() * per_w_0;
         let w_rate = w_0.dot(&w_1) * per_w_0 * per_w_0;
         let g_1 = g_0 * (c_1.dot(&c_2) / speed_squared - w_rate);
         let n2 = w_0 * per_w_0;
-        let h1_sigma = height.value() * g_1 - e.dot(&c_1) * g_0;
+        let h1_sigma = r.dot(e) * g_1 - e.dot(&c_1) * g_0;
         let h2_sigma = (r.dot(&w_1) - r.dot(&w_0) * w_rate) * per_w_0;
 
-        let along = first.map(|c| c.truncate());
-        let length = length.truncate();
         Located {
-            surfaces: [height * g, dot(&error, &w) * per_w],
+            surfaces: [h1, h2],
             gradients: [e * g_0 + grad_sigma * h1_sigma, n2 + grad_sigma * h2_sigma],
-            along,
+            along: first.map(|c| c.truncate()),
             length,
-            speed: dot(&along, &velocity(position)) / length,
+            speed,
             reach_margin: divisor / speed_squared,
         }
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
         self.sigma = self.harmonics.search(&self.offset(position));
-        self.local = self.harmonics.local(self.sigma);
+        self.harmonics.local(self.sigma, &mut self.local);
         true
     }
 }
@@ -152,7 +175,7 @@ impl<T: Real, const K: usize> Curved<T> for FourierPath<T, K> {
         let [second, third, fourth] = [c_2 * T::lit(2.0), c_3 * T::lit(6.0), c_4 * T::lit(12.0)];
         let [fifth, sixth, seventh] = [c_5 * T::lit(20.0), c_6 * T::lit(30.0), c_7 * T::lit(42.0)];
         let compose = |component: fn(&Vector3<T>) -> T| {
-            self.advance.compose(&[second, third, fourth, fifth, sixth, seventh].map(|c| component(&c)))
+            self.nearest.advance.compose(&[second, third, fourth, fifth, sixth, seventh].map(|c| component(&c)))
         };
         [compose(|c| c.x), compose(|c| c.y), compose(|c| c.z)]
     }

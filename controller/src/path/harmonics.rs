@@ -52,29 +52,32 @@ impl<T: Real, const K: usize> Harmonics<T, K> {
         let turn = sigma.sin_cos();
         // The even derivatives are multiples ±k^m of the harmonic itself, the odd ones of its first
         // derivative: one after the other, for the sums of both don't fit the registers.
-        let even = self.sum::<M>(turn, |a, b, sin, cos, _| a * cos + b * sin);
-        let odd = self.sum::<M>(turn, |a, b, sin, cos, frequency| (b * cos - a * sin) * frequency);
+        let even = self.sum::<M>(turn, |a, b, sin, cos| a * cos + b * sin, |_| T::one());
+        let odd = self.sum::<M>(turn, |a, b, sin, cos| b * cos - a * sin, |frequency| frequency);
         core::array::from_fn(|order| if order % 2 == 0 { even[order / 2] } else { odd[order / 2] })
     }
 
-    /// Every second derivative, of M in all, the first of which is `start` for each harmonic.
+    /// Every second derivative, of M in all: for each harmonic multiples of `start`, the first by
+    /// `factor` of its frequency.
     #[inline(always)]
     fn sum<const M: usize>(
         &self,
         (sin_1, cos_1): (T, T),
-        start: impl Fn(Vector3<T>, Vector3<T>, T, T, T) -> Vector3<T>,
+        start: impl Fn(Vector3<T>, Vector3<T>, T, T) -> Vector3<T>,
+        factor: impl Fn(T) -> T,
     ) -> [Vector3<T>; 4] {
         const { assert!(M <= 8) };
         let (mut sin, mut cos) = (sin_1, cos_1);
         let mut frequency = T::one();
         let mut sums = [Vector3::zeros(); 4];
         for (a, b) in self.cos.iter().zip(&self.sin) {
-            let mut derivative = start(Vector3::from(*a), Vector3::from(*b), sin, cos, frequency);
-            let factor = -(frequency * frequency);
+            let derivative = start(Vector3::from(*a), Vector3::from(*b), sin, cos);
+            let square = frequency * frequency;
+            let mut factor = factor(frequency);
             for_each_order!(HALF in [0 1 2 3] {
                 if 2 * HALF < M {
-                    sums[HALF] += derivative;
-                    derivative *= factor;
+                    sums[HALF] += derivative * factor;
+                    factor *= -square;
                 }
             });
             (sin, cos) = (sin * cos_1 + cos * sin_1, cos * cos_1 - sin * sin_1);
@@ -120,12 +123,11 @@ impl<T: Real, const K: usize> Harmonics<T, K> {
 
     /// c about `sigma` less a0, by its Taylor coefficients.
     #[inline]
-    pub(super) fn local(&self, sigma: T) -> Local<T> {
-        let mut local = self.derivatives(sigma);
+    pub(super) fn local(&self, sigma: T, local: &mut Local<T>) {
+        *local = self.derivatives(sigma);
         for (c, &factor) in local.iter_mut().zip(&T::PER_FACTORIAL) {
             *c *= factor;
         }
-        local
     }
 
     /// The longest Newton step: half of the shortest harmonic's radian.

@@ -1,7 +1,7 @@
 //! The point of a curve nearest to the payload, followed along the payload's motion.
 //!
 //! The parameter σ(t) of the nearest point solves (p(t) − c(σ(t)))·c′(σ(t)) = 0. Order 0 is
-//! Newton's method on the Taylor polynomial of c that the last sample left; the others follow one
+//! Newton's method on the Taylor polynomial of r·c′ that the last sample left; the others follow one
 //! by one, for each is linear in the newest coefficient of σ(t).
 
 // As in series.rs: indices run over compile-time orders.
@@ -21,22 +21,29 @@ pub(super) type Local<T> = [Vector3<T>; N + 1];
 /// σ − σ₀ of the point of the polynomial `local` nearest to a payload at `error` from its
 /// beginning c(σ₀), by `STEPS` of Newton from 0.
 ///
-/// Each step is `longest` at most, and the curvature's part of its divisor is bounded, so that it
-/// goes downhill wherever it starts.
+/// r·c′ is a polynomial in σ − σ₀ itself, here up to its fourth power: what is left out vanishes
+/// with the way from sample to sample, so that a payload at rest has its nearest point exactly.
+///
+/// Each step is `longest` at most, and its divisor is bounded, so that it goes downhill wherever it
+/// starts.
 #[inline(always)]
 pub(super) fn track<T: Real, const STEPS: usize>(local: &Local<T>, error: &Vector3<T>, longest: T) -> T {
-    // The first step is from 0, where the polynomial's derivatives are its coefficients.
-    let mut s = newton(error, &local[1], &(local[2] + local[2]), longest);
+    let [_, c_1, c_2, c_3, c_4, c_5, ..] = local;
+    let square = c_1.dot(c_1);
+    let least = square * T::lit(0.1);
+    // Of r·c′ = (error − Δc)·c′ with Δc·c′ = (|Δc|²)′/2; the first less its sign.
+    let f_0 = error.dot(c_1);
+    let f_1 = square - error.dot(c_2) * T::lit(2.0);
+    let f_2 = (error.dot(c_3) - c_1.dot(c_2)) * T::lit(3.0);
+    let f_3 = (error.dot(c_4) - c_1.dot(c_3)) * T::lit(4.0) - c_2.dot(c_2) * T::lit(2.0);
+    let f_4 = (error.dot(c_5) - c_1.dot(c_4) - c_2.dot(c_3)) * T::lit(5.0);
+    let (f_2_twice, f_3_thrice, f_4_fourfold) = (f_2 + f_2, f_3 * T::lit(3.0), f_4 * T::lit(4.0));
+    let step = |value: T, divisor: T| (value / divisor.max(least)).clamp(-longest, longest);
+    let mut s = step(f_0, f_1);
     for _ in 1..STEPS {
-        // c, c′ and c″/2 by Horner's rule.
-        let (mut c, mut c_1, mut c_2) = (local[N] * s + local[N - 1], local[N], Vector3::zeros());
-        for_each_order!(K in [5 4 3 2 1 0] {
-            c_2 = c_2 * s + c_1;
-            c_1 = c_1 * s + c;
-            c = c * s + local[K];
-        });
-        let r = error - (c - local[0]);
-        s += newton(&r, &c_1, &(c_2 + c_2), longest);
+        let value = (((f_4 * s + f_3) * s + f_2) * s - f_1) * s + f_0;
+        let divisor = f_1 - ((f_4_fourfold * s + f_3_thrice) * s + f_2_twice) * s;
+        s += step(value, divisor);
     }
     s
 }
@@ -97,6 +104,7 @@ impl<T: Real> Advance<T> {
 }
 
 /// r = p − c(σ), c′(σ) and σ − σ(0) along the payload's motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Nearest<T> {
     pub(super) error: [Series<T, N>; 3],
     pub(super) first: [Series<T, N>; 3],
@@ -106,62 +114,69 @@ pub(super) struct Nearest<T> {
     pub(super) divisor: T,
 }
 
-/// r and c′ up to an order.
-struct Solving<T> {
-    r: [Vector3<T>; N],
-    first: [Vector3<T>; N],
-    advance: Advance<T>,
-}
-
-impl<T: Real> Solving<T> {
+impl<T: Real> Nearest<T> {
     /// Order M of σ(t), r and c′.
     #[inline(always)]
-    fn raise<const M: usize>(&mut self, local: &Local<T>, motion: Vector3<T>, per_divisor: T) {
+    fn raise<const M: usize>(&mut self, position: &PositionSeries<T>, local: &Local<T>, per_divisor: T) {
         self.advance.raise::<M>();
-        let (mut r, mut d) = (motion, Vector3::zeros());
+        let mut product = T::EMPTY_SUM;
+        let (mut r, mut d) = ([T::zero(); 3], [T::EMPTY_SUM; 3]);
+        let mut powers = [T::zero(); N];
+        let mut scaled = [T::zero(); N];
         for_each_order!(J in [2 3 4 5 6] {
             if J <= M {
-                let power = self.advance.0[at(J, M - J)];
-                r -= local[J] * power;
-                d += local[J + 1] * (power * T::WHOLE[J + 1]);
+                powers[J] = self.advance.0[at(J, M - J)];
+                scaled[J] = powers[J] * T::WHOLE[J + 1];
             }
         });
-        let mut product = r.dot(&self.first[0]) + self.r[0].dot(&d);
-        for i in 1..M {
-            product += self.r[i].dot(&self.first[M - i]);
-        }
+        for_each_order!(AXIS in [0 1 2] {
+            r[AXIS] = position[AXIS].0[M];
+            for_each_order!(J in [2 3 4 5 6] {
+                if J <= M {
+                    r[AXIS] -= local[J][AXIS] * powers[J];
+                    d[AXIS] += local[J + 1][AXIS] * scaled[J];
+                }
+            });
+            product += r[AXIS] * self.first[AXIS].0[0];
+            if M > 1 {
+                product += self.error[AXIS].0[0] * d[AXIS];
+            }
+            for i in 1..M {
+                product += self.error[AXIS].0[i] * self.first[AXIS].0[M - i];
+            }
+        });
         let newest = product * per_divisor;
         self.advance.0[M - 1] = newest;
-        self.r[M] = r - local[1] * newest;
         let twice = newest + newest;
-        self.first[M] = d + local[2] * twice;
+        for_each_order!(AXIS in [0 1 2] {
+            self.error[AXIS].0[M] = r[AXIS] - self.first[AXIS].0[0] * newest;
+            self.first[AXIS].0[M] = d[AXIS] + local[2][AXIS] * twice;
+        });
     }
-}
 
-/// Solves r·c′ = 0 order by order, given c's Taylor polynomial about the nearest point and r there.
-#[inline(always)]
-pub(super) fn solve<T: Real>(position: &PositionSeries<T>, error: &Vector3<T>, local: &Local<T>) -> Nearest<T> {
-    let speed_squared = local[1].dot(&local[1]);
-    let half = error.dot(&local[2]);
-    let divisor = speed_squared - (half + half);
-    let per_divisor = T::one() / divisor;
-    let [x, y, z] = position;
-    let motion = |m: usize| Vector3::new(x.0[m], y.0[m], z.0[m]);
-    let mut solving = Solving { r: [Vector3::zeros(); N], first: [Vector3::zeros(); N], advance: Advance::none() };
-    solving.r[0] = *error;
-    solving.first[0] = local[1];
-    solving.raise::<1>(local, motion(1), per_divisor);
-    solving.raise::<2>(local, motion(2), per_divisor);
-    solving.raise::<3>(local, motion(3), per_divisor);
-    solving.raise::<4>(local, motion(4), per_divisor);
-    solving.raise::<5>(local, motion(5), per_divisor);
-    solving.raise::<6>(local, motion(6), per_divisor);
-    let transposed = |v: &[Vector3<T>; N]| [Series(v.map(|v| v.x)), Series(v.map(|v| v.y)), Series(v.map(|v| v.z))];
-    Nearest {
-        error: transposed(&solving.r),
-        first: transposed(&solving.first),
-        advance: solving.advance,
-        speed_squared,
-        divisor,
+    /// Of no motion at all.
+    pub(super) fn none() -> Self {
+        let (zero, zeros) = (T::zero(), [Series::constant(T::zero()); 3]);
+        Self { error: zeros, first: zeros, advance: Advance::none(), speed_squared: zero, divisor: zero }
+    }
+
+    /// Solves r·c′ = 0 order by order, given c's Taylor polynomial about the nearest point and r
+    /// there.
+    #[inline(never)]
+    pub(super) fn solve(&mut self, position: &PositionSeries<T>, error: &Vector3<T>, local: &Local<T>) {
+        let half = error.dot(&local[2]);
+        self.speed_squared = local[1].dot(&local[1]);
+        self.divisor = self.speed_squared - (half + half);
+        let per_divisor = T::one() / self.divisor;
+        for axis in 0..3 {
+            self.error[axis].0[0] = error[axis];
+            self.first[axis].0[0] = local[1][axis];
+        }
+        self.raise::<1>(position, local, per_divisor);
+        self.raise::<2>(position, local, per_divisor);
+        self.raise::<3>(position, local, per_divisor);
+        self.raise::<4>(position, local, per_divisor);
+        self.raise::<5>(position, local, per_divisor);
+        self.raise::<6>(position, local, per_divisor);
     }
 }

@@ -33,46 +33,42 @@ fn raise<T: Real, const D: usize>(u: T, below: &[T; POINTS]) -> [T; POINTS] {
     row
 }
 
-/// `row` times `factor`.
-#[inline(always)]
-fn scaled<T: Real>(row: &[T; POINTS], factor: T) -> [T; POINTS] {
-    row.map(|weight| weight * factor)
-}
-
-/// The weights w_{k,i} at a place of a span, by k.
+/// The weights w_{k,i} at a place of a span, by k: 8 of order 0, 7 of order 1, and so on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Weights<T>([[T; POINTS]; POINTS]);
+pub(super) struct Weights<T>([T; POINTS * (POINTS + 1) / 2]);
+
+/// Where the weights of order k begin.
+const fn row(k: usize) -> usize {
+    k * (2 * POINTS + 1 - k) / 2
+}
 
 impl<T: Real> Weights<T> {
     /// At `u` from the span's beginning, 0 to 1.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn at(u: T) -> Self {
-        let mut unit = [T::zero(); POINTS];
-        unit[0] = T::one();
-        let linear = raise::<T, 1>(u, &unit);
-        let quadratic = raise::<T, 2>(u, &linear);
-        let cubic = raise::<T, 3>(u, &quadratic);
-        let quartic = raise::<T, 4>(u, &cubic);
-        let quintic = raise::<T, 5>(u, &quartic);
-        let sextic = raise::<T, 6>(u, &quintic);
-        let septic = raise::<T, 7>(u, &sextic);
-        let per = |k: usize| T::PER_FACTORIAL[k] * T::PER_FACTORIAL[7 - k];
-        Self([
-            scaled(&septic, per(0)),
-            scaled(&sextic, per(1)),
-            scaled(&quintic, per(2)),
-            scaled(&quartic, per(3)),
-            scaled(&cubic, per(4)),
-            scaled(&quadratic, per(5)),
-            scaled(&linear, per(6)),
-            scaled(&unit, per(7)),
-        ])
+        let mut weights = Self([T::zero(); POINTS * (POINTS + 1) / 2]);
+        let mut bases = [T::zero(); POINTS];
+        bases[0] = T::one();
+        weights.set::<7>(&bases);
+        for_each_order!(D in [1 2 3 4 5 6 7] {
+            bases = raise::<T, D>(u, &bases);
+            weights.set::<{ 7 - D }>(&bases);
+        });
+        weights
+    }
+
+    /// Those of order K from d! N_{i,d}, d = 7 − K.
+    #[inline(always)]
+    fn set<const K: usize>(&mut self, bases: &[T; POINTS]) {
+        let factor = T::PER_FACTORIAL[K] * T::PER_FACTORIAL[7 - K];
+        for i in 0..POINTS - K {
+            self.0[row(K) + i] = bases[i] * factor;
+        }
     }
 
     /// The curve's value from its control points.
     pub(super) fn value(&self, points: &[Vector3<T>; POINTS]) -> Vector3<T> {
-        let [weights, ..] = &self.0;
-        points.iter().zip(weights).fold(Vector3::zeros(), |sum, (point, &weight)| sum + point * weight)
+        points.iter().zip(&self.0).fold(Vector3::zeros(), |sum, (point, &weight)| sum + point * weight)
     }
 
     /// Taylor coefficients of order 0 to M − 1 of C splines, from their control points.
@@ -83,11 +79,11 @@ impl<T: Real> Weights<T> {
         for_each_order!(K in [0 1 2 3 4 5 6 7] {
             if K < M {
                 for c in 0..C {
-                    taylor[c][K] = self.0[K][0] * differences[c][0];
+                    taylor[c][K] = self.0[row(K)] * differences[c][0];
                 }
                 for i in 1..POINTS - K {
                     for c in 0..C {
-                        taylor[c][K] += self.0[K][i] * differences[c][i];
+                        taylor[c][K] += self.0[row(K) + i] * differences[c][i];
                     }
                 }
                 for c in 0..C {
@@ -101,35 +97,32 @@ impl<T: Real> Weights<T> {
     /// Leaves the values alone: what the splines are where they do not change.
     #[cold]
     pub(super) fn hold(&mut self) {
-        let [_, changes @ ..] = &mut self.0;
-        *changes = [[T::zero(); POINTS]; POINTS - 1];
+        self.0.iter_mut().skip(POINTS).for_each(|weight| *weight = T::zero());
     }
 
     /// Taylor coefficients of a curve less P₃, from the steps Pᵢ₊₁ − Pᵢ of its control points:
     /// far from the origin the steps hold what their difference would lose.
     #[inline(always)]
-    pub(super) fn taylor_of_steps(&self, steps: [Vector3<T>; POINTS - 1]) -> [Vector3<T>; POINTS] {
+    pub(super) fn taylor_of_steps(&self, steps: [Vector3<T>; POINTS - 1], taylor: &mut [Vector3<T>; POINTS]) {
         // Step i belongs to all points behind it, or, before P₃, is what the points up to it lack.
-        let w = &self.0[0];
+        let w = &self.0;
         let (before_1, behind_6) = (w[0] + w[1], w[6] + w[7]);
         let behind_5 = behind_6 + w[5];
         let sums = [-w[0], -before_1, -(before_1 + w[2]), behind_5 + w[4], behind_5, behind_6, w[7]];
         let mut differences = steps;
-        let mut taylor = [Vector3::zeros(); POINTS];
         taylor[0] = differences[0] * sums[0];
         for i in 1..POINTS - 1 {
             taylor[0] += differences[i] * sums[i];
         }
         for_each_order!(K in [1 2 3 4 5 6 7] {
-            taylor[K] = differences[0] * self.0[K][0];
+            taylor[K] = differences[0] * self.0[row(K)];
             for i in 1..POINTS - K {
-                taylor[K] += differences[i] * self.0[K][i];
+                taylor[K] += differences[i] * self.0[row(K) + i];
             }
             for i in 0..POINTS - 1 - K {
                 differences[i] = differences[i + 1] - differences[i];
             }
         });
-        taylor
     }
 
     /// Taylor coefficients of order 0 to 2 of the cubic spline (C²) over the four control points in
@@ -139,31 +132,14 @@ impl<T: Real> Weights<T> {
         let [p0, p1, p2, p3] = points;
         let [d0, d1, d2] = [p1 - p0, p2 - p1, p3 - p2];
         // w_{4,i} is N_{i,3}/4!, and so on.
-        let row = |k: usize, n: usize| scaled(&self.0[k], T::FACTORIAL[k] * T::PER_FACTORIAL[n]);
+        let factor = |k: usize, n: usize| T::FACTORIAL[k] * T::PER_FACTORIAL[n];
+        let w = |k: usize, i: usize| self.0[row(k) + i];
         [
-            dot::<_, 4>(&row(4, 0), &padded([p0, p1, p2, p3])),
-            dot::<_, 3>(&row(5, 1), &padded([d0, d1, d2])),
-            dot::<_, 2>(&row(6, 2), &padded([d1 - d0, d2 - d1])),
+            (w(4, 0) * p0 + w(4, 1) * p1 + w(4, 2) * p2 + w(4, 3) * p3) * factor(4, 0),
+            (w(5, 0) * d0 + w(5, 1) * d1 + w(5, 2) * d2) * factor(5, 1),
+            (w(6, 0) * (d1 - d0) + w(6, 1) * (d2 - d1)) * factor(6, 2),
         ]
     }
-}
-
-/// `numbers`, and zeros.
-#[inline(always)]
-fn padded<T: Real, const N: usize>(numbers: [T; N]) -> [T; POINTS] {
-    let mut row = [T::zero(); POINTS];
-    row[..N].copy_from_slice(&numbers);
-    row
-}
-
-/// Σ aᵢ bᵢ of the first N.
-#[inline(always)]
-fn dot<T: Real, const N: usize>(a: &[T; POINTS], b: &[T; POINTS]) -> T {
-    let mut sum = a[0] * b[0];
-    for i in 1..N {
-        sum += a[i] * b[i];
-    }
-    sum
 }
 
 /// The first N differences of numbers, in their place.

@@ -14,8 +14,8 @@ use model::{Analytic, OutOfRange, Real, Series};
 use nalgebra::Vector3;
 
 use crate::path::PositionSeries;
-use crate::path::curve::{dot, norm_squared, now, velocity};
-use crate::path::nearest::{Local, Nearest, newton, solve, track};
+use crate::path::curve::{Sum, now};
+use crate::path::nearest::{Local, Nearest, newton, track};
 use crate::path::spline::{POINTS, Weights};
 use crate::path::{Outputs, Path};
 
@@ -40,6 +40,12 @@ impl<T: Real> Place<T> {
             self.along += T::one();
             self.span = if self.span > 0 { self.span.wrapping_sub(1) } else { last };
         }
+    }
+
+    /// The splines' weights there, or at the end it is beyond.
+    #[inline(always)]
+    fn weights(&self) -> Weights<T> {
+        Weights::at(self.along - self.outside())
     }
 
     /// How far outside its span it is, of an open run's ends.
@@ -120,40 +126,49 @@ pub struct Route<T, S> {
     /// P₃ of the place's span, and c less it about the place.
     anchor: Vector3<T>,
     local: Local<T>,
+    nearest: Nearest<T>,
     search: Search<T>,
     is_resumed: bool,
 }
 
-/// The curve about `place` of the span of `window`, less its anchor; and the weights there.
-#[inline(always)]
-fn curve<T: Real>(window: &[Knot<T>; POINTS], place: &Place<T>) -> (Local<T>, Weights<T>) {
-    let outside = place.outside();
-    let weights = Weights::at(place.along - outside);
+/// Makes `local` the curve about `place` of the span of `window`, less its anchor, from the
+/// `weights` there.
+#[inline(never)]
+fn expand<T: Real>(window: &[Knot<T>; POINTS], weights: &Weights<T>, place: &Place<T>, local: &mut Local<T>) {
     let [k0, k1, k2, k3, k4, k5, k6, _] = window;
     let steps = [k0, k1, k2, k3, k4, k5, k6].map(|knot| Vector3::from(knot.step));
-    let local = weights.taylor_of_steps(steps);
-    (if outside == T::zero() { local } else { straight(local, outside) }, weights)
+    weights.taylor_of_steps(steps, local);
+    let outside = place.outside();
+    if outside != T::zero() {
+        straighten(local, outside);
+    }
 }
 
-/// `outside` further on, straight.
+/// Goes straight on by `outside`.
 #[cold]
-fn straight<T: Real>([c, c_1, ..]: Local<T>, outside: T) -> Local<T> {
-    let mut local = [Vector3::zeros(); POINTS];
-    (local[0], local[1]) = (c + c_1 * outside, c_1);
-    local
+fn straighten<T: Real>(local: &mut Local<T>, outside: T) {
+    let [c, c_1, bends @ ..] = local;
+    *c += *c_1 * outside;
+    *bends = [Vector3::zeros(); POINTS - 2];
 }
 
-/// h1 and h2 as far as they are summed up over the axes, and the fields now with their change by σ.
-struct Surfaces<T> {
-    heights: [Series<T, 7>; 2],
+/// The fields n1 and n2 now, and their change by σ.
+struct Fields<T> {
     normals: [Vector3<T>; 2],
     changes: [Vector3<T>; 2],
 }
 
-impl<T: Real> Surfaces<T> {
+impl<T: Real> Fields<T> {
+    /// Adds one axis' part to h1 and h2.
     // Axis by axis and apart, so that the numbers at work fit the registers.
     #[inline(never)]
-    fn add<const AXIS: usize>(&mut self, window: &[Knot<T>; POINTS], weights: &Weights<T>, nearest: &Nearest<T>) {
+    fn add<const AXIS: usize>(
+        &mut self,
+        window: &[Knot<T>; POINTS],
+        weights: &Weights<T>,
+        nearest: &Nearest<T>,
+        surfaces: &mut [Series<T, 7>; 2],
+    ) {
         let points = |n: usize| window.each_ref().map(|knot| knot.normals[n][AXIS]);
         let [first, second] = weights.taylor::<7, 2>([points(0), points(1)]);
         (self.normals[0][AXIS], self.changes[0][AXIS]) = (first[0], first[1]);
@@ -161,10 +176,10 @@ impl<T: Real> Surfaces<T> {
         let r = nearest.error[AXIS];
         let heights = [first, second].map(|taylor| r * nearest.advance.compose(&taylor));
         if AXIS == 0 {
-            self.heights = heights;
+            *surfaces = heights;
         } else {
-            self.heights[0] += heights[0];
-            self.heights[1] += heights[1];
+            surfaces[0] += heights[0];
+            surfaces[1] += heights[1];
         }
     }
 }
@@ -194,6 +209,7 @@ impl<T: Real, S: Table<T>> Route<T, S> {
             place: Place { span: 0, along: zero },
             anchor: Vector3::zeros(),
             local: [Vector3::zeros(); POINTS],
+            nearest: Nearest::none(),
             search: Search::new(),
             is_resumed: false,
         };
@@ -217,7 +233,10 @@ impl<T: Real, S: Table<T>> Route<T, S> {
         for span in 0..self.spans() {
             let place = Place { span, along: T::zero() };
             let Some(window) = self.window(&place) else { continue };
-            let ([_, c_1, ..], weights) = curve(window, &place);
+            let mut local = self.local;
+            let weights = place.weights();
+            expand(window, &weights, &place, &mut local);
+            let [_, c_1, ..] = local;
             let length = c_1.dot(&c_1).sqrt();
             OutOfRange::check("length of a span", length, 1e-3, 1e3)?;
             let normal = |n: usize| weights.value(&window.each_ref().map(|knot| Vector3::from(knot.normals[n])));
@@ -258,7 +277,9 @@ impl<T: Real, S: Table<T>> Route<T, S> {
     /// The acceleration of a load that flies the route there as it is laid, N, m/s².
     pub fn acceleration(&self) -> Vector3<T> {
         let Some(window) = self.window(&self.place) else { return Vector3::zeros() };
-        let (local, weights) = curve(window, &self.place);
+        let mut local = self.local;
+        let weights = self.place.weights();
+        expand(window, &weights, &self.place, &mut local);
         let is_backward = self.is_backward;
         let way = |knot: &Knot<T>| if is_backward { -knot.speed[1] } else { knot.speed[0] };
         let [taylor] = weights.taylor::<6, 1>([window.each_ref().map(way)]);
@@ -341,9 +362,11 @@ impl<T: Real, S: Table<T>> Route<T, S> {
     /// Remembers `place` as the last sample's.
     fn settle(&mut self, place: Place<T>) {
         self.place = place;
+        let mut local = self.local;
         if let Some(window) = self.window(&place) {
             let [_, _, _, anchor, ..] = window;
-            (self.anchor, self.local) = (Vector3::from(anchor.point), curve(window, &place).0);
+            expand(window, &place.weights(), &place, &mut local);
+            (self.anchor, self.local) = (Vector3::from(anchor.point), local);
         }
     }
 
@@ -421,47 +444,47 @@ impl<T: Real, S: Table<T>> Path<T> for Route<T, S> {
             *outputs = Outputs::none();
             return;
         };
-        let (local, mut weights) = curve(window, &place);
+        let mut weights = place.weights();
+        expand(window, &weights, &place, &mut self.local);
         let [_, _, k2, k3, k4, k5, ..] = window;
         self.anchor = Vector3::from(k3.point);
-        self.local = local;
         let mut yaw = weights.taylor_of_cubic([k2.yaw, k3.yaw, k4.yaw, k5.yaw]);
         if place.outside() != T::zero() {
             weights.hold();
             yaw = [yaw[0], T::zero(), T::zero()];
         }
 
-        let [c, c_1, ..] = local;
+        let [c, c_1, ..] = self.local;
         let r = p - self.anchor - c;
-        let nearest = solve(position, &r, &local);
-        let along = nearest.first.map(|c| c.truncate());
-        let length = norm_squared(&along).sqrt();
-        let speed = dot(&along, &velocity(position)) / length;
-        let way = |knot: &Knot<T>| if is_backward { -knot.speed[1] } else { knot.speed[0] };
-        let [taylor] = weights.taylor::<6, 1>([window.each_ref().map(way)]);
-        let prescribed = nearest.advance.compose(&taylor);
+        self.nearest.solve(position, &r, &self.local);
+        let nearest = &self.nearest;
+        let (mut square, mut speed) = (Sum::empty(), Sum::empty());
+        for (d, p) in nearest.first.iter().zip(position) {
+            let d = d.truncate();
+            square.add_square(&d);
+            speed.add_product(&d, &p.differentiate());
+        }
+        let length = square.0.sqrt();
+        let [way] = weights.taylor::<6, 1>([window.each_ref().map(|knot| knot.speed[usize::from(is_backward)])]);
+        let prescribed = nearest.advance.compose(&way);
+        let prescribed = if is_backward { -prescribed } else { prescribed };
+        outputs.speed_error = speed.0 / length - prescribed;
+        outputs.prescribed = prescribed;
+        outputs.tangent = c_1 * (one / length.value());
+        outputs.yaw = nearest.advance.compose(&yaw);
+        outputs.reach_margin = nearest.divisor / nearest.speed_squared;
 
-        let (zeros, zero) = ([Vector3::zeros(); 2], Series::constant(T::zero()));
-        let mut surfaces = Surfaces { heights: [zero; 2], normals: zeros, changes: zeros };
-        surfaces.add::<0>(window, &weights, &nearest);
-        surfaces.add::<1>(window, &weights, &nearest);
-        surfaces.add::<2>(window, &weights, &nearest);
+        let zeros = [Vector3::zeros(); 2];
+        let mut fields = Fields { normals: zeros, changes: zeros };
+        fields.add::<0>(window, &weights, nearest, &mut outputs.surfaces);
+        fields.add::<1>(window, &weights, nearest, &mut outputs.surfaces);
+        fields.add::<2>(window, &weights, nearest, &mut outputs.surfaces);
         // r moves by dp − c′ dσ and n by n′ dσ, with ∇σ = c′/divisor.
         let grad_sigma = c_1 * (one / nearest.divisor);
-        let [n1, n2] = surfaces.normals;
-        let [n1_1, n2_1] = surfaces.changes;
-        *outputs = Outputs {
-            surfaces: surfaces.heights,
-            gradients: [
-                n1 + grad_sigma * (r.dot(&n1_1) - c_1.dot(&n1)),
-                n2 + grad_sigma * (r.dot(&n2_1) - c_1.dot(&n2)),
-            ],
-            tangent: c_1 * (one / length.value()),
-            speed_error: speed - prescribed,
-            prescribed,
-            yaw: nearest.advance.compose(&yaw),
-            reach_margin: nearest.divisor / nearest.speed_squared,
-        };
+        for n in 0..2 {
+            let (normal, change) = (fields.normals[n], fields.changes[n]);
+            outputs.gradients[n] = normal + grad_sigma * (r.dot(&change) - c_1.dot(&normal));
+        }
     }
 
     fn search(&mut self, position: &Vector3<T>) -> bool {
