@@ -146,14 +146,6 @@ impl<T: Real, const N: usize> Sum<T, N> {
         }
     }
 
-    /// Adds a · `factor`.
-    #[inline(always)]
-    pub(super) fn add_multiple(&mut self, Series(a): &Series<T, N>, factor: T) {
-        for k in 0..N {
-            self.0.0[k] += a[k] * factor;
-        }
-    }
-
     /// Adds a², each product of two coefficients once.
     #[inline(always)]
     pub(super) fn add_square(&mut self, Series(a): &Series<T, N>) {

@@ -96,6 +96,22 @@ impl<T: Real, const K: usize> FourierPath<T, K> {
     }
 }
 
+/// |c′|, and ρ·v with ρ = c′/|c′|.
+// Apart, so that the numbers at work fit the registers.
+#[inline(never)]
+fn length_and_speed<T: Real>(
+    first: &[Series<T, 7>; 3],
+    position: &PositionSeries<T>,
+) -> (Series<T, 7>, Series<T, 6>) {
+    let (mut square, mut along) = (Sum::empty(), Sum::empty());
+    for (d, p) in first.iter().zip(position) {
+        square.add_square(d);
+        along.add_product(&d.truncate(), &p.differentiate());
+    }
+    let length = square.0.sqrt();
+    (length, along.0 / length.truncate())
+}
+
 impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
     #[inline]
     fn locate(&mut self, position: &PositionSeries<T>) -> Located<T> {
@@ -125,16 +141,9 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
         let w_length = square.0.sqrt();
         let h2 = across.0 / w_length;
 
-        let (mut height, mut square, mut speed) = (Sum::empty(), Sum::empty(), Sum::empty());
-        for (((r, d), e), p) in error.iter().zip(first).zip(e).zip(position) {
-            height.add_multiple(r, *e);
-            square.add_square(d);
-            speed.add_product(&d.truncate(), &p.differentiate());
-        }
-        let length = square.0.sqrt();
-        let h1 = height.0 * length / w_length;
-        let length = length.truncate();
-        let speed = speed.0 / length;
+        let (length, speed) = length_and_speed(first, position);
+        let [r1, r2, r3] = *error;
+        let h1 = (r1 * e.x + r2 * e.y + r3 * e.z) * length / w_length;
 
         // Gradients: r moves by dp − c′ dσ, c′ by c″ dσ, with ∇σ = c′/divisor.
         let Nearest { speed_squared, divisor, .. } = self.nearest;
@@ -154,7 +163,7 @@ impl<T: Real, const K: usize> Curve<T> for FourierPath<T, K> {
             surfaces: [h1, h2],
             gradients: [e * g_0 + grad_sigma * h1_sigma, n2 + grad_sigma * h2_sigma],
             along: first.map(|c| c.truncate()),
-            length,
+            length: length.truncate(),
             speed,
             reach_margin: divisor / speed_squared,
         }

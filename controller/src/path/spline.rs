@@ -24,12 +24,13 @@ pub(super) const POINTS: usize = 8;
 /// d! N_{i,d}(u) from (d − 1)! N_{i,d−1}(u), the row before.
 #[inline(always)]
 fn raise<T: Real, const D: usize>(u: T, below: &[T; POINTS]) -> [T; POINTS] {
-    let mut row = [T::zero(); POINTS];
-    row[0] = (T::one() - u) * below[0];
-    for i in 1..D {
+    // The last first: each takes the place of one that no other needs any more.
+    let mut row = *below;
+    row[D] = u * below[D - 1];
+    for i in (1..D).rev() {
         row[i] = (u + T::WHOLE[D - i]) * below[i - 1] + (T::WHOLE[i + 1] - u) * below[i];
     }
-    row[D] = u * below[D - 1];
+    row[0] = (T::one() - u) * below[0];
     row
 }
 
