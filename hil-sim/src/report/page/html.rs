@@ -39,7 +39,7 @@ pub fn page(page: &Page<'_>, reference: &Reference) -> String {
     let below = html! {
         @for outcome in &outcomes {
             @if let Some(replayed) = &outcome.flight.replayed {
-                h2 { "What the log of " (outcome.scenario.name) " says of the replay" }
+                h2 { (outcome.scenario.name) " beside its log" }
                 ul { @for sentence in replayed.sentences() { li { (sentence) } } }
             }
         }

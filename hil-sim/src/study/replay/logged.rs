@@ -41,6 +41,11 @@ fn all<const N: usize>(row: &[f64; N]) -> bool {
     row.iter().all(|number| number.is_finite())
 }
 
+/// An attitude that is not known yet is logged as zeros.
+fn is_attitude(q: &[f64; 4]) -> bool {
+    (0.5..2.0).contains(&q.iter().map(|part| part * part).sum::<f64>())
+}
+
 fn any<const N: usize>(row: &[f64; N]) -> bool {
     row.iter().any(|number| number.is_finite())
 }
@@ -67,7 +72,7 @@ impl Logged {
     /// [`ReplayError`] for what is no log, or lacks how the UAV moves.
     pub fn read(bytes: &[u8], full_thrust: Option<f64>) -> Result<Self, ReplayError> {
         let uav = Series::read(bytes, ["uav_p1", "uav_p2", "uav_p3", "uav_v1", "uav_v2", "uav_v3"], all)?;
-        let attitude = Series::read(bytes, ["att_w", "att_x", "att_y", "att_z"], all)?;
+        let attitude = Series::read(bytes, ["att_w", "att_x", "att_y", "att_z"], is_attitude)?;
         let body_rate = denser(
             Series::read(bytes, ["omega1", "omega2", "omega3"], all)?,
             Series::read(bytes, ["raw_omega1", "raw_omega2", "raw_omega3"], all)?,
