@@ -52,6 +52,7 @@ pub fn fault(fault: Fault) -> LoadFault {
         Fault::NotFinite => LoadFault::LOAD_FAULT_LAW,
         Fault::NoPath => LoadFault::LOAD_FAULT_NO_PATH,
         Fault::Slack => LoadFault::LOAD_FAULT_TENSION,
+        Fault::Caught => LoadFault::LOAD_FAULT_CAUGHT,
         Fault::PayloadLost => LoadFault::LOAD_FAULT_PAYLOAD_LOST,
         Fault::Contradiction => LoadFault::LOAD_FAULT_BAD_STATE,
         _ => LoadFault::empty(),
@@ -93,6 +94,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::Slack), _) => "cable slack, or below VEH_ROD",
         (Some(Fault::PayloadLost), _) => "payload lost",
         (Some(Fault::Contradiction), _) => "load measured out of reach",
+        (Some(Fault::Caught), _) => "UAV hangs from a caught load",
         (Some(_), _) => "another fault",
         (None, _) => "",
     };

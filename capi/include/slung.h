@@ -102,6 +102,7 @@ enum slung_fault {
     SLUNG_FAULT_PAYLOAD_LOST = 4, /* the payload is gone */
     SLUNG_FAULT_SLACK = 5,        /* the cable is slack, or shorter than it was told to be */
     SLUNG_FAULT_CONTRADICTION = 6, /* load and UAV are measured where no cable of this length could have them */
+    SLUNG_FAULT_CAUGHT = 7,       /* landing, the UAV hung from its cable: the load is caught */
     SLUNG_FAULT_STATE = 0x100,    /* plus: 0 position, 1 velocity, 2 rod, 3 rod rate, 4 attitude, 5 body rate,
                                      6 position and 7 velocity of the UAV */
     SLUNG_FAULT_MARGIN = 0x200    /* plus an enum slung_warning: that margin is beyond its limit */

@@ -43,6 +43,7 @@ pub fn fault_code(fault: Fault) -> u32 {
         Fault::PayloadLost => 4,
         Fault::Slack => 5,
         Fault::Contradiction => 6,
+        Fault::Caught => 7,
         Fault::State(channel) => {
             0x100
                 + match channel {

@@ -1,7 +1,7 @@
 //! Flights from the ground to the ground: whole missions by the one controller, what is measured of
 //! their landings, what counts as a crash, and the campaign of them.
 
-use controller::Mode;
+use controller::{Fault, Mode, Request};
 use hil_sim::describe::scenario::Scenario;
 use hil_sim::fly::flight::{Control, End, Entry, Moment, Plan, fly};
 use hil_sim::fly::pilot::Pilot;
@@ -9,16 +9,21 @@ use hil_sim::fly::run::{Arithmetic, fly_simply};
 use hil_sim::study::campaign::{self, Campaign, Verdict, fly_run};
 use hil_sim::world::Seed;
 
-/// The paper's vehicle with its load beside it, and 2 m of cable; `more` are keys before all tables.
-fn scenario(requests: &str, more: &str) -> Scenario {
-    let text = format!(
+const STANDING: &str = "{ position = [0.8, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true }";
+const HANGING: &str = "{ position = [0.0, 0.0, -6.0] }";
+
+/// The paper's vehicle with 2 m of cable, as it `begins`, over such `ground`; `more` are keys before
+/// all tables.
+fn text(begins: &str, ground: &str, requests: &str, more: &str) -> String {
+    format!(
         r#"
         duration_s = 90.0
         path = {{ kind = "circle", radius = 4.0, p3 = -6.0, speed = 1.0 }}
-        initial = {{ position = [0.8, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true }}
+        initial = {begins}
         request = [{requests}]
         {more}
         [ground]
+        {ground}
         [controller]
         law = "follow"
         rate_hz = 250.0
@@ -26,8 +31,16 @@ fn scenario(requests: &str, more: &str) -> Scenario {
         observer = {{ payload = 4.0, rod = 4.0, torque = 4.0 }}
         limits = {{ thrust = [1.5, 65.0], torque = [3.0, 3.0, 1.0] }}
         "#
-    );
-    Scenario::parse("ground.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+    )
+}
+
+fn parsed(text: &str) -> Scenario {
+    Scenario::parse("ground.toml", text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// With the load beside the UAV, both on level ground.
+fn scenario(requests: &str, more: &str) -> Scenario {
+    parsed(&text(STANDING, "", requests, more))
 }
 
 /// Flies it; how it ended, and the modes on the way.
@@ -117,6 +130,67 @@ fn it_lands_softly_whatever_the_cable_the_ground_and_the_sensors_do() {
         let (end, modes) = flown(&scenario(WHOLE, more), &mut |moment| touchdown = Some(*moment.touchdown));
         assert!(matches!(end, End::Landed(_)), "{more}: {end:?}, {modes:?}");
         assert!(touchdown.and_then(|t| t.uav_m_s).is_some_and(|speed| speed < SOFT), "{more}: {touchdown:?}");
+    }
+}
+
+/// A load that stays caught on its way down keeps the UAV in the air, by its cable in the end, be it
+/// known by its own navigation or by the rod alone, and be the load seen or not. That is no landing:
+/// the rotors go on, the vehicle holds and says why, and it lands once the load is free.
+#[test]
+fn a_load_that_is_caught_ends_in_hold_and_not_with_rotors_off() {
+    const AGAIN: &str = r#"{ at_s = 75.0, do = "hold" }, { at_s = 76.0, do = "land" }"#;
+    let start = r#"{ at_s = 0.0, do = "hold" }, { at_s = 40.0, do = "land" }"#;
+    for (begun, requests, sensors) in [
+        (STANDING, WHOLE, ""),
+        (STANDING, WHOLE, "sensors = { accelerometer = false }"),
+        (STANDING, WHOLE, "sensors = { rod = { nan = { at_s = 43.0, for_s = 900.0 } } }"),
+        (HANGING, start, "sensors = { uav = false, accelerometer = false }"),
+    ] {
+        for until_s in [70.0, 900.0] {
+            let name = format!("{sensors} caught until {until_s} s");
+            let more = format!("cable = {{ snagged = {{ at_s = 42.0, for_s = {:?} }} }}\n{sensors}", until_s - 42.0);
+            let text = text(begun, "", &format!("{requests}, {AGAIN}"), &more).replace("90.0", "140.0");
+            let (mut flies, mut faults) = (false, Vec::new());
+            let (end, modes) = flown(&parsed(&text), &mut |moment| {
+                let Some(decision) = moment.decision else { return };
+                flies |= !matches!(decision.mode, Mode::Off | Mode::Idle);
+                let [_, stands] = moment.body.touching();
+                assert!(!flies || stands || decision.mode != Mode::Off, "{name}: off at {} s", moment.t_s);
+                if decision.mode == Mode::Hold
+                    && moment.request == Request::Land
+                    && faults.last() != Some(&decision.fault)
+                {
+                    faults.push(decision.fault);
+                }
+            });
+            println!("{name}: {end:?} {modes:?} {faults:?}");
+            assert!(faults.contains(&Some(Fault::Caught)), "{name}: {faults:?}");
+            let lands = matches!(end, End::Landed(_));
+            assert_eq!(lands, until_s < 900.0, "{name}: {end:?} {modes:?}");
+        }
+    }
+}
+
+/// Nobody tells how high the ground is, how it slopes, nor what the payload comes to stand on.
+#[test]
+fn it_lands_softly_on_ground_that_is_not_told() {
+    for ground in [
+        "p3 = -1.5",
+        "slope = [0.17, 0.0]",
+        "slope = [-0.1, 0.15]",
+        "box_height = 1.0",
+        "box_height = -1.0",
+        "box_height = 0.5\nslope = [0.0, -0.1]",
+    ] {
+        let mut touchdown = None;
+        let text = text(STANDING, ground, WHOLE, "");
+        let (end, modes) = flown(&parsed(&text), &mut |moment| touchdown = Some(*moment.touchdown));
+        println!("{ground}: {end:?} {touchdown:?}");
+        assert!(matches!(end, End::Landed(_)), "{ground}: {end:?}, {modes:?}");
+        let touchdown = touchdown.expect("it was watched");
+        for speed in [touchdown.uav_m_s, touchdown.load_m_s] {
+            assert!(speed.is_some_and(|speed| speed < SOFT), "{ground}: {touchdown:?}");
+        }
     }
 }
 

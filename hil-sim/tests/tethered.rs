@@ -264,6 +264,44 @@ fn a_slide_is_as_long_as_coulombs_friction_makes_it() {
     assert!(body.bodies().velocity.amax() < 1e-6);
 }
 
+/// On a slope, tan θ: what friction holds creeps down at v_0 tan θ/√(μ² − tan² θ); where it does not
+/// hold, energy goes into friction alone. On its box the payload stands that much higher.
+#[test]
+fn a_slope_holds_what_friction_holds() {
+    let slope = [0.3_f64, -0.4];
+    let (steep, cos) = (slope[0].hypot(slope[1]), 1.0 / 1.25_f64.sqrt());
+    let vehicle = VehicleParameters { rod_length: 50.0, ..vehicle() };
+    let slid = |friction: f64, box_height: f64, time: f64| {
+        let ground = Ground { friction, slope, box_height, ..Ground::default() };
+        let [down, _] = ground.standing(&Vector3::zeros(), &Vector3::zeros());
+        let mut body =
+            Tethered::new(vehicle, Cable::default(), Some(ground), &at_rest([0.0, 0.0, down], [0.0, 0.0, -10.0]));
+        fly(&mut body, thrust(vehicle.uav_mass * G), Loads::none(), time, (time * 4000.0) as u32);
+        (ground, body)
+    };
+    let (ground, body) = slid(0.8, 0.5, 2.0);
+    let Bodies { position, velocity, .. } = body.bodies();
+    let creep = 0.01 * steep / (0.8_f64 * 0.8 - steep * steep).sqrt();
+    println!("creeps at {:.6} of {creep:.6} m/s", velocity.norm());
+    assert!((velocity.norm() / creep - 1.0).abs() < 1e-6, "{velocity:?}");
+    // Downhill, along the plane.
+    let downhill = Vector3::new(slope[0], slope[1], steep * steep) / steep * cos;
+    assert!((velocity - downhill * creep).amax() < 1e-8, "{velocity:?}");
+    let sunk = ground.payload_depth(&position);
+    assert!((sunk - ground.sink * cos).abs() < 1e-8, "{sunk}");
+    assert!(
+        (position.z + ground.payload_height + 0.5 - slope[0] * position.x - slope[1] * position.y - ground.sink)
+            .abs()
+            < 1e-6
+    );
+    // g (sin θ − μ cos θ), less what the start takes of friction.
+    let (_, body) = slid(0.1, 0.0, 1.0);
+    let speed = body.bodies().velocity.norm();
+    let expected = G * cos * (steep - 0.1);
+    println!("slides at {speed:.4} of {expected:.4} m/s");
+    assert!((speed / expected - 1.0).abs() < 1e-3, "{speed} {expected}");
+}
+
 #[test]
 fn a_uav_let_go_of_just_above_the_ground_stands_level_on_its_feet() {
     let ground = Ground::default();

@@ -181,7 +181,9 @@ impl Server {
         self.reported = now;
         let severity = match now {
             (_, None, None) => MavSeverity::MAV_SEVERITY_INFO,
-            (Mode::Fault, ..) | (_, Some(Fault::PayloadLost), _) => MavSeverity::MAV_SEVERITY_CRITICAL,
+            (Mode::Fault, ..) | (_, Some(Fault::PayloadLost | Fault::Caught), _) => {
+                MavSeverity::MAV_SEVERITY_CRITICAL
+            }
             _ => MavSeverity::MAV_SEVERITY_WARNING,
         };
         Some(status(severity, &report::text(mode, fault, waits_for, autopilot.absence())))

@@ -3,6 +3,7 @@
 pub(crate) mod cable;
 pub(crate) mod envelope;
 pub(crate) mod fence;
+pub(crate) mod footing;
 pub(crate) mod landing;
 pub(crate) mod mode;
 pub(crate) mod payload;

@@ -68,6 +68,9 @@ pub enum Fault {
     PayloadLost,
     /// Load, rod and UAV are measured where no cable of this length could have them together.
     Contradiction,
+    /// A landing UAV was carried by what it does not stand on: by its cable, with the load caught on
+    /// the way down.
+    Caught,
 }
 
 /// What to do without a state.

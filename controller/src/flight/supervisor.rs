@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use crate::error::Refused;
 use crate::flight::cable::{Cable, SHORTENED, Watching};
 use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
+use crate::flight::footing::{Carried, Footing};
 use crate::flight::landing::{Aim, Landing};
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 use crate::flight::payload::Payload;
@@ -21,10 +22,7 @@ use crate::sampled::sampler::Sampler;
 /// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as
 /// the rotors can, goes first.
 const JOINING_THRUST: f64 = 0.75;
-/// How far above its target the ground must keep a landing vehicle, m: more than hold lags in any
-/// descent.
-const GROUNDED: f64 = 1.5;
-/// From so far above on it may stand already, and does not go aside, m.
+/// So far above its target, m, a landing UAV may stand already, and does not go aside.
 const CARRIED: f64 = 0.3;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
 const CALM_SPEED: f64 = 1.0;
@@ -55,16 +53,16 @@ const CALM_TILT: f64 = 0.95;
 /// while the UAV's own navigation is there, or one that contradicts it; *no state* the absence of
 /// both:
 ///
-/// | mode    | `Off` | `Idle` | `Follow` | `Hold`  | `Land` | risen | path reached | margin beyond | payload lost | cable slack | landed | load unseen | no state | none for long |
-/// |---------|-------|--------|----------|---------|--------|-------|--------------|---------------|--------------|-------------|--------|-------------|----------|---------------|
-/// | Off     | Off   | Idle   | Idle     | Idle    | Off    |       |              |               |              |             |        | Off         | Off      | Off           |
-/// | Idle    | Off   | Idle   | Hold     | Hold    | Off    |       |              |               |              |             |        | Idle        | Idle     | Idle          |
-/// | TakeOff | Off   | Hold   | TakeOff  | TakeOff | Land   | Hold  |              |               |              | TakeOff     |        | TakeOff     | TakeOff  | Fault         |
-/// | Join    | Off   | Hold   | Join     | Hold    | Land   |       | Follow       | Hold          | Hold         | Hold        |        | Hold        | Join     | Fault         |
-/// | Follow  | Off   | Hold   | Follow   | Hold    | Land   |       |              | Hold          | Hold         | Hold        |        | Hold        | Follow   | Fault         |
-/// | Hold    | Off   | Hold   | Join     | Hold    | Land   |       |              | Hold          |              | Hold        |        | Hold        | Hold     | Fault         |
-/// | Land    | Off   | Hold   | Hold     | Hold    | Land   |       |              | Land          |              | Land        | Off    | Land        | Land     | Fault         |
-/// | Fault   | Off   | Hold   | Hold     | Hold    | Hold   |       |              | Hold          |              | Hold        |        | Hold        | Fault    | Fault         |
+/// | mode    | `Off` | `Idle` | `Follow` | `Hold`  | `Land` | risen | path reached | margin beyond | payload lost | cable slack | landed | caught | load unseen | no state | none for long |
+/// |---------|-------|--------|----------|---------|--------|-------|--------------|---------------|--------------|-------------|--------|--------|-------------|----------|---------------|
+/// | Off     | Off   | Idle   | Idle     | Idle    | Off    |       |              |               |              |             |        |        | Off         | Off      | Off           |
+/// | Idle    | Off   | Idle   | Hold     | Hold    | Off    |       |              |               |              |             |        |        | Idle        | Idle     | Idle          |
+/// | TakeOff | Off   | Hold   | TakeOff  | TakeOff | Land   | Hold  |              |               |              | TakeOff     |        |        | TakeOff     | TakeOff  | Fault         |
+/// | Join    | Off   | Hold   | Join     | Hold    | Land   |       | Follow       | Hold          | Hold         | Hold        |        |        | Hold        | Join     | Fault         |
+/// | Follow  | Off   | Hold   | Follow   | Hold    | Land   |       |              | Hold          | Hold         | Hold        |        |        | Hold        | Follow   | Fault         |
+/// | Hold    | Off   | Hold   | Join     | Hold    | Land   |       |              | Hold          |              | Hold        |        |        | Hold        | Hold     | Fault         |
+/// | Land    | Off   | Hold   | Hold     | Hold    | Land   |       |              | Land          |              | Land        | Off    | Hold   | Land        | Land     | Fault         |
+/// | Fault   | Off   | Hold   | Hold     | Hold    | Hold   |       |              | Hold          |              | Hold        |        |        | Hold        | Fault    | Fault         |
 ///
 /// With the UAV's own navigation ([`Measured::uav`]) idle leads to take-off rather than to hold.
 /// Without it a rod beyond the envelope, as that of a vehicle which stands beside its load, leaves
@@ -72,7 +70,9 @@ const CALM_TILT: f64 = 0.95;
 /// Hold, landing and take-off fly the UAV itself and take the cable for a pull; without that
 /// navigation they take it for taut. A landing sets the load down, goes aside, and sets the UAV down
 /// beside it; without that navigation it keeps the cable taut and flies the UAV around the load, an
-/// arc of the cable's length, to the ground.
+/// arc of the cable's length, to the ground. Rotors go off once the UAV itself stands, which shows by
+/// its not turning when it is asked to. One that is carried and does not stand hangs from its cable,
+/// since the load has been *caught*: it holds until something else is asked for.
 ///
 /// From hold the path is joined at once if follow has just been asked for and the vehicle is inside
 /// its envelope, and otherwise after
@@ -96,6 +96,7 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     cable: Cable<T>,
     payload: Payload<T>,
     landing: Landing<T>,
+    footing: Footing<T>,
     sampler: Sampler<T, A>,
     law: L,
     policy: Policy<T>,
@@ -134,6 +135,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
+            footing: Footing::none(),
             from: T::zero(),
             blind: T::zero(),
             calm: T::zero(),
@@ -265,7 +267,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         if let Some(output) = self.carried(fault, uav, measured.specific_force) {
             return output;
         }
-        self.fault = Some(fault);
+        if self.fault != Some(Fault::Caught) {
+            self.fault = Some(fault);
+        }
         match uav {
             Some(uav) => self.without_load(uav, measured.specific_force),
             None => self.without_state(),
@@ -453,6 +457,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             (Mode::Idle, _) if uav.is_some() => Mode::TakeOff,
             (Mode::Idle, _) if state.is_some_and(|state| !self.may_lift(state)) => Mode::Idle,
             (Mode::Idle, _) => Mode::Hold,
+            (Mode::Hold, Request::Land) if self.fault == Some(Fault::Caught) => Mode::Hold,
             (Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold | Mode::Land, Request::Land) => Mode::Land,
             (Mode::TakeOff, Request::Follow | Request::Hold) if !self.has_risen(uav) => Mode::TakeOff,
             (Mode::Join, Request::Follow) if self.law.approach().is_active() => Mode::Join,
@@ -549,6 +554,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.calm = T::zero();
         self.payload.leave();
         self.landing = Landing::begin();
+        self.footing = Footing::none();
         self.fault = fault.or(self.fault);
     }
 
@@ -596,10 +602,16 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let vehicle = self.sampler.vehicle();
         let uav = self.sampler.look_ahead(&aimed, &pull);
         let wanted = self.hold.step(vehicle, &uav, &pull, &swing, &velocity, period);
-        if self.mode == Mode::Land && self.hold.left_above(now) > T::lit(GROUNDED) {
-            self.mode = Mode::Off;
-            self.request = Request::Off;
-            return self.ground(state, T::zero());
+        if self.mode == Mode::Land {
+            match self.footing.feel(self.hold.left_above(now), now.body_rate.z, period) {
+                Carried::Flying => self.hold.turn(self.footing.turn()),
+                Carried::Standing => {
+                    self.mode = Mode::Off;
+                    self.request = Request::Off;
+                    return self.ground(state, T::zero());
+                }
+                Carried::Hanging => self.enter_hold(now, Some(Fault::Caught)),
+            }
         }
         let is_calm = state.is_some_and(|state| {
             is_within(&state.velocity, T::lit(CALM_SPEED * CALM_SPEED))

@@ -80,6 +80,8 @@ pub(crate) struct Hold<T> {
     remainder: Vector3<T>,
     velocity: Vector3<T>,
     integral: Vector3<T>,
+    /// The yaw rate that is wanted, rad/s.
+    yaw_rate: T,
 }
 
 impl<T: Real> Hold<T> {
@@ -107,6 +109,7 @@ impl<T: Real> Hold<T> {
             remainder: Vector3::zeros(),
             velocity: level(&uav.velocity),
             integral: Vector3::zeros(),
+            yaw_rate: T::zero(),
         }
     }
 
@@ -115,13 +118,18 @@ impl<T: Real> Hold<T> {
         (self.target, self.velocity, self.remainder) = (target, velocity, Vector3::zeros());
     }
 
+    /// The yaw rate, rad/s, from now on.
+    pub(crate) fn turn(&mut self, yaw_rate: T) {
+        self.yaw_rate = yaw_rate;
+    }
+
     /// Whether the UAV is where it should be, to within what counts.
     pub(crate) fn has_settled(&self, uav: &Uav<T>) -> bool {
         is_within(&(uav.position - self.target), T::lit(REACH * REACH))
     }
 
     /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
-    /// that the ground carries it.
+    /// that something carries it.
     pub(crate) fn left_above(&self, uav: &Uav<T>) -> T {
         self.target.z - uav.position.z
     }
@@ -181,7 +189,7 @@ impl<T: Real> Hold<T> {
         let omega_dot = Vector3::new(
             -attitude * y - rate * omega.x,
             attitude * x - rate * omega.y,
-            -T::lit(YAW_RATE_GAIN) * omega.z,
+            T::lit(YAW_RATE_GAIN) * (self.yaw_rate - omega.z),
         );
         let inertia = vehicle.inertia();
         Command {

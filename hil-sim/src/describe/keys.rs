@@ -517,10 +517,18 @@ pub const SECTIONS: &[Section] = &[
     },
     Section {
         table: "ground",
-        about: "Level ground: a spring and a damper that do not pull, and Coulomb's friction.",
+        about: "A plane: a spring and a damper that do not pull, and Coulomb's friction.",
         least: "[ground]\n",
         keys: &[
-            key("p3", "m", Number(-1e5, 1e5), "0.0", "Where it is; negative is above the origin."),
+            key("p3", "m", Number(-1e5, 1e5), "0.0", "Where it is at p1 = p2 = 0; negative is above the origin."),
+            key("slope", "", Each(2, -1.0, 1.0), "[0.0, 0.0]", "By how much its p3 grows along p1 and p2."),
+            key(
+                "box_height",
+                "m",
+                Number(-100.0, 100.0),
+                "0.0",
+                "Of a box on which the payload comes to stand; negative: a pit. The UAV stands beside it.",
+            ),
             key("sink", "m", Number(1e-5, 0.1), "0.002", "How far a body sinks in by its own weight."),
             key("damping_ratio", "", Number(0.0, 2.0), "0.5", "Of a body on it."),
             key("friction", "", Number(0.0, 2.0), "0.5", "μ."),

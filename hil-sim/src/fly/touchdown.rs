@@ -73,7 +73,7 @@ impl Watch {
             is_hard = uav.is_some_and(|speed| speed > ground.crash_speed);
         }
         let [_, uav_touches] = touching;
-        is_hard || bodies.uav_position.z >= ground.p3 || uav_touches && bodies.attitude.m33 < TIPPED
+        is_hard || ground.depth(&bodies.uav_position) >= 0.0 || uav_touches && bodies.attitude.m33 < TIPPED
     }
 
     /// Notes what is asked for and what the vehicle does; `true` once it has flown, its rotors are

@@ -1,4 +1,4 @@
-//! Level ground, and what it does to a point of a body that has come into it.
+//! The ground, a plane, and what it does to a point of a body that has come into it.
 //!
 //! At a depth δ and with a velocity v, whose part into the ground is δ̇ and whose part along it is
 //! v_t:
@@ -21,14 +21,18 @@ use controller::Vector3;
 use serde::Deserialize;
 
 use super::check;
-use crate::describe::input::Invalid;
+use crate::describe::input::{Invalid, all_within, join};
 
 /// The ground, and how the bodies stand on it.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ground {
-    /// Where it is, m; positive is lower.
+    /// Where it is at p1 = p2 = 0, m; positive is lower.
     pub p3: f64,
+    /// By how much p3 grows along p1 and p2, each within ±1.
+    pub slope: [f64; 2],
+    /// Of a box on which the payload comes to stand, m, −100 to 100; negative is a pit.
+    pub box_height: f64,
     /// How far a body sinks in by its own weight, m, 10⁻⁵ to 0.1.
     pub sink: f64,
     /// ζ of a body that bounces on it, 0 to 2.
@@ -50,6 +54,8 @@ impl Default for Ground {
     fn default() -> Self {
         Self {
             p3: 0.0,
+            slope: [0.0; 2],
+            box_height: 0.0,
             sink: 0.002,
             damping_ratio: 0.5,
             friction: 0.5,
@@ -71,6 +77,8 @@ impl Ground {
     /// [`Invalid`] names the field.
     pub fn check(&self, at: &str) -> Result<(), Invalid> {
         check(at, "p3", self.p3, -1e5, 1e5)?;
+        all_within(&join(at, "slope"), self.slope, 1.0)?;
+        check(at, "box_height", self.box_height, -100.0, 100.0)?;
         check(at, "sink", self.sink, 1e-5, 0.1)?;
         check(at, "damping_ratio", self.damping_ratio, 0.0, 2.0)?;
         check(at, "friction", self.friction, 0.0, 2.0)?;
@@ -95,16 +103,40 @@ impl Ground {
         [stiffness, 2.0 * self.damping_ratio * (stiffness * mass).sqrt()]
     }
 
-    /// p3 of a payload and of a level UAV that stand on it, m.
+    /// p3 of a payload and of a level UAV that stand on it at these places, m; on a slope that of a
+    /// UAV whose feet are all above it.
     #[must_use]
-    pub fn standing(&self) -> [f64; 2] {
-        [self.payload_height, self.feet_below].map(|height| self.p3 + self.sink - height)
+    pub fn standing(&self, payload: &Vector3<f64>, uav: &Vector3<f64>) -> [f64; 2] {
+        let [s1, s2] = self.slope;
+        let at = |place: &Vector3<f64>, height: f64| self.level(place) + self.sink - height;
+        [
+            at(payload, self.payload_height) - self.box_height,
+            at(uav, self.feet_below) - self.feet_apart * s1.hypot(s2),
+        ]
     }
 
-    /// How deep a point at p3 = `down` (m) is in the ground, m; negative is above it.
+    /// p3 of the ground at a point's p1 and p2, m.
+    fn level(&self, point: &Vector3<f64>) -> f64 {
+        let [s1, s2] = self.slope;
+        self.p3 + s1 * point.x + s2 * point.y
+    }
+
+    /// The unit normal, into the ground.
+    fn normal(&self) -> Vector3<f64> {
+        let [s1, s2] = self.slope;
+        Vector3::new(-s1, -s2, 1.0) / (1.0 + s1 * s1 + s2 * s2).sqrt()
+    }
+
+    /// How deep a point is in the ground, m; negative is above it.
     #[must_use]
-    pub fn depth(&self, down: f64) -> f64 {
-        down - self.p3
+    pub fn depth(&self, point: &Vector3<f64>) -> f64 {
+        (point.z - self.level(point)) * self.normal().z
+    }
+
+    /// How deep what the payload stands with is in the ground, or in its box, m.
+    #[must_use]
+    pub fn payload_depth(&self, position: &Vector3<f64>) -> f64 {
+        self.depth(&(position + Vector3::z() * (self.payload_height + self.box_height)))
     }
 
     /// The force in N on a point of a body of `mass`, `depth` (m) in the ground and moving at
@@ -115,10 +147,12 @@ impl Ground {
             return Vector3::zeros();
         }
         let [stiffness, damping] = self.stiffness(mass, gravity);
-        let normal = (stiffness * depth + damping * velocity.z).max(0.0);
-        let slip = (velocity.x * velocity.x + velocity.y * velocity.y + CREEP * CREEP).sqrt();
-        let share = -self.friction * normal / slip;
-        Vector3::new(share * velocity.x, share * velocity.y, -normal)
+        let into = self.normal();
+        let sinking = velocity.dot(&into);
+        let normal = (stiffness * depth + damping * sinking).max(0.0);
+        let along = velocity - into * sinking;
+        let slip = (along.dot(&along) + CREEP * CREEP).sqrt();
+        along * (-self.friction * normal / slip) - into * normal
     }
 
     /// ½ k δ² of a point `depth` (m) in the ground, J.

@@ -387,8 +387,8 @@ impl Tethered {
     fn depths(&self, x: &Coordinates) -> [f64; POINTS] {
         let Some(ground) = self.ground else { return [f64::NEG_INFINITY; POINTS] };
         let attitude = attitude(x);
-        let [a, b, c, d] = ground.feet().map(|foot| ground.depth(x[2] + (attitude * foot).z));
-        [ground.depth(x[8] + ground.payload_height), a, b, c, d]
+        let [a, b, c, d] = ground.feet().map(|foot| ground.depth(&(vector(x, 0) + attitude * foot)));
+        [ground.payload_depth(&vector(x, 6)), a, b, c, d]
     }
 
     fn rates_at(&self, x: &Coordinates, command: &Command<f64>, loads: &Loads) -> Rates {

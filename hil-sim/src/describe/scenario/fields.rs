@@ -458,7 +458,7 @@ fn apart(
     };
     if fields.standing {
         let ground = ground.ok_or_else(|| invalid("standing", "needs a [ground] to stand on"))?;
-        [bodies.position.z, bodies.uav_position.z] = ground.standing();
+        [bodies.position.z, bodies.uav_position.z] = ground.standing(&bodies.position, &bodies.uav_position);
     }
     let hook = Vector3::from(cable.unwrap_or_default().hook);
     let apart = bodies.position - bodies.uav_position - bodies.attitude * hook;
