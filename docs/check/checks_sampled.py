@@ -201,6 +201,21 @@ def through_flight():
     assert max(eight) < 2e-6, f"(11.10): {eight}"
 
 
+@covers("12.9")
+def behind():
+    """The error of a force that grows with its rate, found and expected over a latency, as without one."""
+
+    def left(o, latency, s=1e-3):
+        y, x = o * latency, s / o
+        return (1 - math.exp(-s * latency) * (1 + (3 + y) * x) / (1 + x) ** 3) / s**2
+
+    for o, latency in ((8.0, 0.02), (8.0, 0.06), (4.0, 0.1), (2.0, 0.0)):
+        y = o * latency
+        close(left(o, latency), (3 + 3 * y + y * y / 2) / o**2, 1e-3, "(12.9)")
+        faster = o * (y / 2 + math.sqrt(1 + y * y / 12)) / (1 - y * y / 6)
+        close(left(faster, latency), 3 / o**2, 1e-3, "(12.9)")
+
+
 @covers("12.8")
 def bounce():
     """The frequency at which two bodies on a spring part and meet, from their equations."""

@@ -108,7 +108,7 @@ impl<T: Real> Sampler<T> {
             is_saturated: false,
             asked: hover,
             actuators,
-            observer: Observer::new(&vehicle, &ObserverParams::off(), period)?,
+            observer: Observer::new(&vehicle, &ObserverParams::off(), period),
         };
         Ok(Self { memory, actuation: ActuatorLimits::none() })
     }
@@ -134,7 +134,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     }
 
     pub(crate) fn set_observer(&mut self, params: &ObserverParams<T>) -> Result<(), OutOfRange<T>> {
-        self.memory.observer = Observer::new(&self.memory.vehicle, params, self.memory.period)?;
+        params.check()?;
+        let Memory { vehicle, period, actuators, expected, observer, .. } = &mut self.memory;
+        // What is not looked ahead over is no latency to the law.
+        let latency = if expected.is_some() { actuators.latency(*period) } else { T::zero() };
+        *observer = Observer::new(vehicle, &params.behind(latency), *period);
         Ok(())
     }
 
