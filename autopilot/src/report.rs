@@ -115,7 +115,7 @@ fn unseen_text(unseen: Unseen) -> &'static str {
         Unseen::Fix => "no fix (EST_FIX_T)",
         Unseen::Heading => "no heading",
         Unseen::Rod(Validity::Slack) => "cable slack",
-        Unseen::Rod(Validity::Inconsistent) => "rod and thrust disagree",
+        Unseen::Rod(Validity::Inconsistent) => "thrust disagrees (EST_NOISE)",
         Unseen::Rod(_) => "rod not known yet",
     }
 }

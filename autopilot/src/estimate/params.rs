@@ -77,7 +77,7 @@ pub const ENTRIES: &[Entry<f64>] = &[
         "EST_OFFSET",
         "noise.offset",
         "m/s^2",
-        0.04,
+        0.02,
         (1e-4, 10.0),
         "Lateral bias of accelerometer and thrust's axis.",
     ),

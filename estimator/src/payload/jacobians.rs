@@ -157,9 +157,12 @@ fn the_covariance_moves_as_a_dense_product_has_it() {
             q[k][k] = deviation * deviation * (1.0 - phi[k][k] * phi[k][k]);
         }
         for a in 0..2 {
-            phi[a][2 + a] = step;
             for (entry, column) in [0, 1, 2, 3, 4, 5, 6, 7, 11].into_iter().enumerate() {
                 phi[2 + a][column] += rows[a][entry] * step;
+            }
+            // The rod by the new rate.
+            for column in 0..ERRORS {
+                phi[a][column] += step * phi[2 + a][column];
             }
             // Walks go no further than the start's deviation.
             let most = [noise.offset, [noise.thrust, noise.mass][a]].map(|deviation: f64| deviation.powi(2));

@@ -5,7 +5,7 @@
 //! touched by what the load's model makes of it.
 //!
 //! A cycle of 30 periods (60 ms at 500 Hz) spreads the work: every period moves the pendulum on and
-//! sums up the thrust model's residual; the [covariance](predict) moves in two of them, and each
+//! sums up the thrust model's residual; the [covariance](predict) moves in one of them, and each
 //! scalar has one of its own.
 
 mod glide;
@@ -37,9 +37,10 @@ use predict::{Covariance, Spread};
 use state::{ERRORS, index};
 use thrust::{Axis, Linearized, Mean, Window};
 
-/// Periods of a cycle, and of half of one.
+/// Periods of a cycle.
 const CYCLE: u8 = 30;
-const HALF: u8 = 15;
+/// Periods of a window with a thrust told, at least.
+const LEAST: f64 = 15.0;
 /// Periods without inputs after which the estimate is blind: 0.1 s at 500 Hz.
 const BLIND: u16 = 50;
 /// Standard deviation of the rod above which it does not count as known, rad.
@@ -100,7 +101,7 @@ pub struct Payload<T> {
     last: Motion<T>,
     glide: Glide<T>,
     pull: Pull<T>,
-    /// Periods without an input in a row, and in the running half cycle.
+    /// Periods without an input in a row, and since the covariance has moved.
     missing: u16,
     unread: T,
 }
@@ -114,7 +115,7 @@ impl<T: Real> Payload<T> {
         params.check()?;
         let (rod, rate) = (params.noise.start_rod, params.noise.start_rate);
         Ok(Self {
-            spread: Spread::new(&params, params.period * T::lit(f64::from(HALF))),
+            spread: Spread::new(&params, params.period * T::lit(f64::from(CYCLE))),
             state: PayloadState::hanging(),
             covariance: Covariance::diagonal(&params.noise.start()),
             phase: 3,
@@ -266,7 +267,7 @@ impl<T: Real> Payload<T> {
         self.force += pivot.specific_force;
         let pendulum = Pendulum::new(params, &self.state);
         self.pull = if self.watch.cable == Cable::Taut {
-            pendulum.advance(params, &pivot, &mut self.state)
+            pendulum.advance(params, &pivot, &self.pull.acceleration, &mut self.state)
         } else {
             pendulum.pull(params, &pivot, &self.state.rod, &self.state.rod_rate)
         };
@@ -312,7 +313,7 @@ impl<T: Real> Payload<T> {
                 }
                 self.health = self.judge();
             }
-            5 | 20 => self.spread(pendulum, pivot),
+            5 => self.spread(pendulum, pivot),
             6 => {
                 self.taken = self.fresh;
                 self.fresh = [Innovations::none(); 2];
@@ -328,7 +329,7 @@ impl<T: Real> Payload<T> {
 
     /// Ends a window: its mean is for the coming three scalars, its pull for the cable.
     fn close_window(&mut self, attitude: &Matrix3<T>) {
-        self.mean = self.window.mean(T::lit(f64::from(HALF)));
+        self.mean = self.window.mean(T::lit(LEAST));
         self.window = Window::empty();
         if !self.mean.is_full {
             return;

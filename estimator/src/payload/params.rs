@@ -84,7 +84,7 @@ impl<T: Real> Default for PayloadNoise<T> {
             wind_time: T::lit(200.0),
             residual: T::lit(0.04),
             residual_time: T::lit(30.0),
-            offset: T::lit(0.04),
+            offset: T::lit(0.02),
             offset_walk: T::lit(3e-4),
             thrust: T::lit(0.08),
             mass: T::lit(0.4),

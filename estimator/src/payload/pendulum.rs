@@ -83,20 +83,21 @@ impl<T: Real> Pendulum<T> {
         self.wind - pivot.velocity - w * params.cable_length
     }
 
-    /// One period by the midpoint rule, then |q| = 1 by a Newton step, and q̇ ⊥ q. Returns (2) at
-    /// the middle of the period.
+    /// One period by the midpoint rule, then |q| = 1 by a Newton step, and q̇ ⊥ q. The acceleration
+    /// of the period `before` leads to the middle of this one: its change over a period is of the
+    /// rule's own order. Returns (2) there.
     #[inline(always)]
     pub(crate) fn advance(
         &self,
         params: &PayloadParams<T>,
         pivot: &Pivot<T>,
+        before: &Vector3<T>,
         state: &mut PayloadState<T>,
     ) -> Pull<T> {
         let (h, half) = (params.period, params.period * T::lit(0.5));
         let (q, w) = (state.rod, state.rod_rate);
-        let start = self.pull(params, pivot, &q, &w).acceleration;
-        let middle_rate = w + start * half;
-        let middle = self.pull(params, pivot, &(q + (w + start * (half * T::lit(0.5))) * half), &middle_rate);
+        let gained = before * half;
+        let middle = self.pull(params, pivot, &(q + (w + gained * T::lit(0.5)) * half), &(w + gained));
         let q = q + (w + middle.acceleration * half) * h;
         let w = w + middle.acceleration * h;
         let q = q * (T::lit(1.5) - q.dot(&q) * T::lit(0.5));

@@ -1,12 +1,15 @@
-//! How the errors of the payload filter spread: P ← Φ P Φᵀ + Q over half a cycle.
+//! How the errors of the payload filter spread: P ← Φ P Φᵀ + Q over a cycle Δt.
 //!
-//! Φ = 1 + F Δt has four rows that are not the identity's, of which two have one entry beside it;
-//! wind and residual are first-order Markov processes, the rest walks at random:
+//! Wind and residual are first-order Markov processes, the rest walks at random, and the rod swings:
 //!
 //! ```text
 //! η̇ = ζ,   ζ̇ = δq̈_h of (2),   ẇ = −w/τ_w,   ṙ = −r/τ_r
 //! noise of ζ: q_rod² + (N_a/L)² (1 − q qᵀ)_h      since the accelerometer's noise drives the pivot       (6)
 //! ```
+//!
+//! Φ moves ζ first and then η by the new ζ. On a swing its determinant is one, as the swing's own:
+//! 1 + F Δt at once would make an error at √(s/L) larger by (1 + s/L Δt²) each step, which is noise
+//! that nobody has told.
 
 use model::{Real, Vector3};
 
@@ -68,7 +71,7 @@ impl<T: Real> Spread<T> {
         let p = &mut covariance.0;
         let rows = rows.map(|row| row.map(|entry| entry * self.step));
         let step = self.step;
-        // Y = A P, rows of ζ: sums of nine. Those of η are rows of ζ times the step.
+        // Y = A P, rows of ζ: sums of nine.
         let mut turned = [[T::zero(); ERRORS]; 2];
         unrolled!(a < 2, {
             unrolled!(j < ERRORS, {
@@ -82,19 +85,6 @@ impl<T: Real> Spread<T> {
             unrolled!(k < 8, { sum += row[k] * y[k] });
             sum
         };
-        // The blocks of η and ζ, from the old ones and Y.
-        let rod = [
-            p[at(0, 0)] + step * (p[at(0, 2)] + p[at(0, 2)] + step * p[at(2, 2)]),
-            p[at(1, 0)] + step * (p[at(1, 2)] + p[at(0, 3)] + step * p[at(2, 3)]),
-            p[at(1, 1)] + step * (p[at(1, 3)] + p[at(1, 3)] + step * p[at(3, 3)]),
-        ];
-        let mut mixed = [[T::zero(); 2]; 2];
-        unrolled!(a < 2, {
-            unrolled!(b < 2, {
-                // ζ_a with η_b.
-                mixed[a][b] = p[at(2 + a, b)] + turned[a][b] + step * (p[at(2 + a, 2 + b)] + turned[a][2 + b]);
-            });
-        });
         let rate = [
             p[at(2, 2)] + turned[0][2] + turned[0][2] + moved(&turned[0], &rows[0]),
             p[at(3, 2)] + turned[1][2] + turned[0][3] + moved(&turned[1], &rows[0]),
@@ -113,11 +103,22 @@ impl<T: Real> Spread<T> {
                 }
             };
         }
+        unrolled!(a < 2, {
+            unrolled!(b < 2, {
+                // ζ_a with η_b, and η's block from the new ones.
+                p[at(2 + a, b)] += turned[a][b];
+            });
+        });
+        p[at(0, 0)] += step * (p[at(2, 0)] + p[at(2, 0)] + step * rate[0]);
+        p[at(1, 0)] += step * (p[at(2, 1)] + p[at(3, 0)] + step * rate[1]);
+        p[at(1, 1)] += step * (p[at(3, 1)] + p[at(3, 1)] + step * rate[2]);
+        unrolled!(a < 2, { unrolled!(b < 2, { p[at(2 + a, b)] += step * rate[a + b] }) });
         unrolled!(j < ERRORS, {
             if j >= index::WIND {
                 unrolled!(a < 2, {
-                    p[at(a, j)] = (p[at(a, j)] + step * p[at(2 + a, j)]) * kept!(j);
-                    p[at(2 + a, j)] = (p[at(2 + a, j)] + turned[a][j]) * kept!(j);
+                    let with_rate = (p[at(2 + a, j)] + turned[a][j]) * kept!(j);
+                    p[at(2 + a, j)] = with_rate;
+                    p[at(a, j)] = p[at(a, j)] * kept!(j) + step * with_rate;
                 });
                 unrolled!(k < index::OFFSET, {
                     if k >= index::WIND && k <= j {
@@ -126,10 +127,6 @@ impl<T: Real> Spread<T> {
                 });
             }
         });
-        p[at(0, 0)] = rod[0];
-        p[at(1, 0)] = rod[1];
-        p[at(1, 1)] = rod[2];
-        unrolled!(a < 2, { unrolled!(b < 2, { p[at(2 + a, b)] = mixed[a][b] }) });
         p[at(2, 2)] = rate[0] + self.rod + self.pivot * (T::one() - q.x * q.x);
         p[at(3, 2)] = rate[1] - self.pivot * (q.x * q.y);
         p[at(3, 3)] = rate[2] + self.rod + self.pivot * (T::one() - q.y * q.y);

@@ -880,7 +880,7 @@ pub const SECTIONS: &[Section] = &[
                 "Error of the thrust model across its axis, over 40 ms.",
             ),
             key("wind", "m/s", Number(0.1, 50.0), "4.0", "Wind."),
-            key("offset", "m/s²", Number(1e-4, 10.0), "0.04", "Lateral bias of accelerometer and thrust axis."),
+            key("offset", "m/s²", Number(1e-4, 10.0), "0.02", "Lateral bias of accelerometer and thrust axis."),
             key(
                 "start",
                 "",

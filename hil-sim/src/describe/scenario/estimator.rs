@@ -10,7 +10,7 @@
 //! residual = 0.04            # m/s², specific force on the load that drag doesn't explain
 //! lateral = 0.05             # m/s², error of the thrust model across its axis, over 40 ms
 //! wind = 4.0                 # m/s
-//! offset = 0.04              # m/s², lateral bias of accelerometer and thrust's axis
+//! offset = 0.02              # m/s², lateral bias of accelerometer and thrust's axis
 //! start = { rod = 0.4, rate = 0.8 }   # standard deviations of the rod (rad) and its rate (1/s) at the start; it is told to hang
 //! ```
 
