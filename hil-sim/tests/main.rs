@@ -9,6 +9,7 @@ mod estimate;
 mod fit;
 mod formula;
 mod ground;
+mod gusts;
 mod hunt;
 mod keys;
 mod mission;

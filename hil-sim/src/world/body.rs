@@ -77,6 +77,8 @@ pub struct Rates {
 }
 
 /// A vehicle with its payload.
+// A flight has one: a box would cost every step more than a copy's bytes.
+#[allow(clippy::large_enum_variant)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Body {
     /// On a massless rigid rod, far from any ground.
