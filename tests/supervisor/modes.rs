@@ -1,6 +1,6 @@
 //! Every edge of the transition table, as the documentation of `controller::Supervisor` has it.
 
-use controller::{Fault, Follow, Law, Margin, Mode, Path, Policy, Request, Sampling, State, Uav, Vector3};
+use controller::{Fault, Follow, Law, Margin, Measured, Mode, Path, Policy, Request, Sampling, State, Uav, Vector3};
 
 use crate::flight::{CIRCLE, Flight, PERIOD, supervisor};
 
@@ -100,15 +100,10 @@ fn after(event: &str, from: Mode) -> Mode {
             steps.map(|output| output.mode).find(|mode| *mode != from).unwrap_or(from)
         }
         "caught" => {
-            // Something keeps it in the air, where it can turn.
-            let hanging: State<f32> = flight.body.state().cast();
-            let hanging = State {
-                velocity: Vector3::zeros(),
-                rod_rate: Vector3::zeros(),
-                body_rate: Vector3::z() * 0.3,
-                ..hanging
-            };
-            let mut steps = (0..8000).map(|_| flight.supervisor.step(Some(&hanging), standing));
+            // Something keeps it in the air, where it can turn, and the load is not seen.
+            let uav = Uav { velocity: Vector3::zeros(), body_rate: Vector3::z() * 0.3, ..flight.uav() };
+            let measured = Measured { state: None, uav: Some(&uav), specific_force: None };
+            let mut steps = (0..8000).map(|_| flight.supervisor.step(measured, standing));
             let caught = steps.find(|output| output.mode != from).expect("noticed");
             assert_eq!(caught.fault, Some(Fault::Caught));
             // And there it stays, in spite of the request, until another.

@@ -1,8 +1,9 @@
 //! Whether a landing UAV that sinks no further stands on the ground.
 //!
 //! Something carries it, or it would be where it should be: the ground, or, where its load has been
-//! caught on the way, the cable, from which it then hangs. A UAV that stands can't turn. So it is
-//! asked to, one way and then the other, since a constant torque may stop it in one of them.
+//! caught on the way, the cable, from which it then hangs below its load. Where the load is seen
+//! elsewhere it stands. Where not, a UAV that stands can't turn: it is asked to, one way and then the
+//! other, since a constant torque may stop it in one of them.
 
 use model::Real;
 
@@ -47,16 +48,17 @@ impl<T: Real> Footing<T> {
         Self { yaw_rate: T::zero(), is_asked: false, still: T::zero(), carried: T::zero() }
     }
 
-    /// A `period` (s) on, with the UAV `above` (m) where it should be, at its `yaw_rate`, rad/s.
-    pub(crate) fn feel(&mut self, above: T, yaw_rate: T, period: T) -> Carried {
+    /// A `period` (s) on, with the UAV `above` (m) where it should be, at its `yaw_rate`, rad/s; it
+    /// `may_hang` if the load is not seen elsewhere than above it.
+    pub(crate) fn feel(&mut self, above: T, yaw_rate: T, may_hang: bool, period: T) -> Carried {
         self.yaw_rate += (yaw_rate - self.yaw_rate) * (period / T::lit(AVERAGED)).min(T::one());
         let is_still = self.is_asked && self.yaw_rate.abs() < T::lit(TURNING);
-        self.is_asked = above > T::lit(ASKED);
+        self.is_asked = may_hang && above > T::lit(ASKED);
         self.still = if is_still { self.still + period } else { T::zero() };
         self.carried = if above > T::lit(CARRIED) { self.carried + period } else { T::zero() };
         if self.carried == T::zero() {
             Carried::Flying
-        } else if self.still > T::lit(EACH_WAY * 2.0) {
+        } else if !may_hang || self.still > T::lit(EACH_WAY * 2.0) {
             Carried::Standing
         } else if self.carried > T::lit(HANGING) {
             Carried::Hanging

@@ -603,7 +603,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let uav = self.sampler.look_ahead(&aimed, &pull);
         let wanted = self.hold.step(vehicle, &uav, &pull, &swing, &velocity, period);
         if self.mode == Mode::Land {
-            match self.footing.feel(self.hold.left_above(now), now.body_rate.z, period) {
+            let may_hang = state.is_none_or(|state| self.may_hang(&(state.position - now.position)));
+            match self.footing.feel(self.hold.left_above(now), now.body_rate.z, may_hang, period) {
                 Carried::Flying => self.hold.turn(self.footing.turn()),
                 Carried::Standing => {
                     self.mode = Mode::Off;
@@ -633,8 +634,18 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     /// Whether the load hangs from a taut cable, by the `line` to it, m.
     fn hangs(&self, line: &Vector3<T>) -> bool {
+        !self.cable.is_slack() && self.is_stretched(line)
+    }
+
+    /// Whether the UAV may hang from its load, by the `line` to it, m.
+    fn may_hang(&self, line: &Vector3<T>) -> bool {
+        line.z < T::zero() && self.is_stretched(line)
+    }
+
+    /// Whether the cable may pull, by the `line` to the load, m.
+    fn is_stretched(&self, line: &Vector3<T>) -> bool {
         let near = self.sampler.vehicle().params().rod_length * T::lit(SHORTENED);
-        !self.cable.is_slack() && !is_within(line, near * near)
+        !is_within(line, near * near)
     }
 
     /// The velocity that hold goes for: none, or that of a take-off or landing.
