@@ -2,6 +2,7 @@
 //! `qemu-system-arm` and a compiler for thumbv7em.
 
 mod common;
+mod failsafe;
 mod mission;
 
 use std::os::unix::net::UnixStream;
@@ -74,6 +75,13 @@ fn a_mission_from_ground_to_ground_is_the_same_on_every_emulated_board() {
         let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
         assert_eq!(there, here, "on {machine}");
     }
+}
+
+#[test]
+fn each_failsafe_has_its_end_on_an_emulated_board() {
+    let [(machine, image), ..] = images();
+    let mut emulator = Emulator::start(machine, image, false).unwrap();
+    failsafe::fly(emulator.open(OPTIONS.patience).unwrap());
 }
 
 #[test]
