@@ -133,6 +133,39 @@ fn the_table_does_not_depend_on_threads_shards_or_interruptions() {
     }
 }
 
+/// 100,000 flights are merged in 64 MiB of data: their rows, held at once, need 100, and what the
+/// summary is of (some 130 bytes a flight, which it states) with all else 40.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_merge_does_not_hold_its_rows() {
+    const FLIGHTS: usize = 100_000;
+    let folder = folder("many");
+    for (part, shard) in [("part1", "1/2"), ("part2", "2/2")] {
+        run(&folder, part, &["--shard", shard]);
+        let identity = folder.join(part).join("campaign.json");
+        let text = fs::read_to_string(&identity).expect("a file");
+        let more = text.replace("\"runs\": 150", &format!("\"runs\": {FLIGHTS}"));
+        assert!(more != text, "the number of flights was not found");
+        fs::write(&identity, more).expect("a file");
+        // The flown rows again and again, under the numbers of the flights that are not flown.
+        let flown = String::from_utf8(table(&folder, part)).expect("text");
+        let (names, rows) = flown.split_once('\n').expect("names");
+        let cells: Vec<&str> = rows.lines().map(|row| row.split_once(',').expect("a number").1).collect();
+        let runs = (if part == "part1" { 0 } else { 1 }..FLIGHTS).step_by(2);
+        let rows = runs.zip(cells.iter().cycle()).map(|(run, cells)| format!("{run},{cells}\n"));
+        fs::write(folder.join(part).join("runs.csv"), format!("{names}\n{}", rows.collect::<String>()))
+            .expect("a file");
+    }
+    let merged = Command::new("sh")
+        .args(["-c", "ulimit -d 65536; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_hil-sim")])
+        .args(["merge", "part1", "part2", "--out", "merged", "--quiet"])
+        .current_dir(&folder)
+        .output()
+        .expect("it starts");
+    assert!(merged.status.success(), "{}", String::from_utf8_lossy(&merged.stderr));
+    assert_eq!(table(&folder, "merged").iter().filter(|&&byte| byte == b'\n').count(), FLIGHTS + 1);
+}
+
 #[test]
 fn another_campaign_is_not_mixed_into_a_table() {
     let folder = folder("mixed");

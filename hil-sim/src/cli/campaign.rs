@@ -3,9 +3,10 @@
 use clap::{Args, ValueEnum};
 use hil_sim::fly::flight::Control;
 use hil_sim::report::log;
-use hil_sim::study::campaign::{self, Campaign, HuntError, Identity, Replay, Row, Shard};
+use hil_sim::study::campaign::{self, Campaign, HuntError, Identity, Replay, Rows, Shard};
 use hil_sim::world::Seed;
-use std::io::{self, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -130,13 +131,13 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     let planned = identity.shard.runs(identity.runs).count();
     let bar = many::bar(common.quiet, planned as u64, "{wide_bar} {pos} of {len} flights, {eta} left");
     let started = Instant::now();
-    let rows = pool.install(|| campaign::run(&campaign, &identity, common.folder(), &stop, &|done| bar.inc(done)))?;
+    let done = pool.install(|| campaign::run(&campaign, &identity, common.folder(), &stop, &|done| bar.inc(done)))?;
     bar.finish_and_clear();
-    if rows.len() < planned {
-        eprintln!("hil-sim: interrupted: {} of {planned} flights are kept; the same command goes on", rows.len());
+    if done < planned {
+        eprintln!("hil-sim: interrupted: {done} of {planned} flights are kept; the same command goes on");
         return Ok(many::interrupted());
     }
-    report(common, &campaign, identity.seed, &rows, &arguments.tables)?;
+    report(common, &campaign, &identity, &arguments.tables)?;
     if !common.quiet {
         let wall_s = started.elapsed().as_secs_f64();
         writeln!(
@@ -150,31 +151,32 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
 
 /// Puts the shards of a campaign together.
 pub fn merge(common: &Common, folders: &[PathBuf], tables: &Tables) -> Ended {
-    let (identity, rows) = campaign::merge(folders)?;
-    let (mut store, found) = campaign::Store::open(common.folder(), &identity)?;
-    store.append(rows.get(found.len()..).unwrap_or_default())?;
+    let identity = campaign::merge(folders, common.folder())?;
     let campaign = Campaign::parse(&identity.campaign)?;
-    report(common, &campaign, identity.seed, &rows, tables)?;
+    report(common, &campaign, &identity, tables)?;
     Ok(ExitCode::SUCCESS)
 }
 
+/// Makes of the table in the folder whatever else is to be there, row by row.
 fn report(
     common: &Common,
     campaign: &Campaign,
-    seed: u64,
-    rows: &[Row],
+    identity: &Identity,
     tables: &Tables,
 ) -> Result<(), Box<dyn std::error::Error>> {
+    let rows = || Rows::of(common.folder(), identity);
     if tables.table.contains(&TableFormat::Parquet) {
         let path = common.folder().join("runs.parquet");
-        std::fs::write(&path, campaign::parquet(rows)?).map_err(|error| format!("{}: {error}", path.display()))?;
+        let failed = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+        let file = File::create(&path).map_err(|error| failed(&error))?;
+        campaign::write_parquet(BufWriter::new(file), rows()).map_err(|error| failed(&error))?;
     }
-    let summary = campaign::summarize(seed, rows);
-    let duration_s = campaign.draw(Seed { batch: seed, run: 0 })?.scenario.duration_s;
-    let page = campaign::write(common.folder(), &campaign.title, duration_s, &summary, rows)?;
+    let (summary, tally) = campaign::summarize(identity.seed, rows())?;
+    let duration_s = campaign.draw(Seed { batch: identity.seed, run: 0 })?.scenario.duration_s;
+    let page = campaign::write_page(common.folder(), &campaign.title, duration_s, &summary, &tally)?;
     if !common.quiet {
         let mut out = io::stdout().lock();
-        write!(out, "{}", summary.text(rows))?;
+        write!(out, "{}", summary.text())?;
         writeln!(out, "Report: {}", page.display())?;
     }
     Ok(())

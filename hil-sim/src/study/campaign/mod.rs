@@ -18,18 +18,21 @@ mod start;
 mod statistics;
 mod store;
 mod summary;
+mod tally;
 
 pub use draw::Distribution;
 pub use file::{ApproachFields, Campaign, Drawn, builtin};
 pub use fly::{Row, Verdict, fly_run, pilot};
 pub use hunt::{Find, Hunt, HuntError, hunt};
-pub use page::write;
-pub use parquet::encode as parquet;
+pub use page::write as write_page;
+pub use parquet::{ParquetError, write as write_parquet};
 pub use replay::{Replay, replay};
 pub use search::Along;
 pub use start::{Start, StartFields};
-pub use store::{Identity, Shard, Store, StoreError, merge};
+use store::Store;
+pub use store::{Identity, Rows, Shard, StoreError, merge};
 pub use summary::{Summary, summarize};
+pub use tally::Tally;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -57,7 +60,7 @@ pub enum CampaignError {
 }
 
 /// Flies what is left of the campaign that `identity` names, keeping its table in `folder`, and
-/// returns the rows that are done: all of them, unless `stop` became true. `progress` gets the
+/// returns how many flights are done: all of them, unless `stop` became true. `progress` gets the
 /// number of flights done, those found in the folder at once.
 ///
 /// # Errors
@@ -68,18 +71,18 @@ pub fn run(
     folder: &Path,
     stop: &AtomicBool,
     progress: &(dyn Fn(u64) + Sync),
-) -> Result<Vec<Row>, CampaignError> {
-    let (store, rows) = Store::open(folder, identity)?;
-    progress(rows.len() as u64);
-    let left: Vec<u64> = identity.shard.runs(identity.runs).skip(rows.len()).collect();
+) -> Result<usize, CampaignError> {
+    let (store, found) = Store::open(folder, identity)?;
+    progress(found as u64);
+    let left = identity.shard.runs(identity.runs).skip(found);
     let next = AtomicUsize::new(0);
-    let table = Mutex::new(Table { store, rows, done: 0, early: BTreeMap::new(), failure: None });
+    let table = Mutex::new(Table { store, done: 0, early: BTreeMap::new(), failure: None });
     let locked = || table.lock().unwrap_or_else(PoisonError::into_inner);
     // Each thread takes the next flight that nobody flies, so none waits for another's.
     rayon::broadcast(|_| {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(&run) = left.get(index) else { break };
+            let Some(run) = left.clone().nth(index) else { break };
             if stop.load(Ordering::Relaxed) || locked().failure.is_some() {
                 break;
             }
@@ -94,18 +97,17 @@ pub fn run(
             }
         }
     });
-    let Table { rows, failure, .. } = table.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let Table { done, failure, .. } = table.into_inner().unwrap_or_else(PoisonError::into_inner);
     match failure {
         Some((_, error)) => Err(error),
         // Rows after a gap that an interruption left are flown again.
-        None => Ok(rows),
+        None => Ok(found + done),
     }
 }
 
 /// The table under way: flights end in any order, and are kept in theirs.
 struct Table {
     store: Store,
-    rows: Vec<Row>,
     /// Flights kept since the start.
     done: usize,
     /// Those that ended before one that comes before them.
@@ -117,14 +119,18 @@ struct Table {
 impl Table {
     fn take(&mut self, index: usize, row: Row) {
         self.early.insert(index, row);
-        let first = self.rows.len();
-        while let Some(row) = self.early.remove(&self.done) {
-            self.rows.push(row);
-            self.done += 1;
-        }
-        if let Err(error) = self.store.append(&self.rows[first..]) {
+        if let Err(error) = self.keep() {
             self.fail(index, error.into());
         }
+    }
+
+    /// Has those reach the disk that come next.
+    fn keep(&mut self) -> Result<(), StoreError> {
+        while let Some(row) = self.early.remove(&self.done) {
+            self.store.append(&row)?;
+            self.done += 1;
+        }
+        self.store.flush()
     }
 
     fn fail(&mut self, index: usize, error: CampaignError) {

@@ -4,12 +4,12 @@ use maud::{DOCTYPE, Markup, html};
 use plotters::prelude::*;
 use std::path::{Path, PathBuf};
 
-use super::fly::{INSTANTS, Row, Verdict};
+use super::fly::INSTANTS;
 use super::summary::Summary;
+use super::tally::Tally;
 use crate::report::page::{figure, head};
 use crate::report::plot::{Area, COLOURS, Curve, Drawn, FINE, drawing, time_log};
 use crate::report::{ReportError, write_file};
-use crate::study::compare::percentile;
 
 /// Writes `summary.json` and `campaign.html` into `folder` and returns the page's path.
 ///
@@ -20,39 +20,39 @@ pub fn write(
     title: &str,
     duration_s: f64,
     summary: &Summary,
-    rows: &[Row],
+    tally: &Tally,
 ) -> Result<PathBuf, ReportError> {
     let mut json = serde_json::to_string_pretty(summary).expect("plain numbers and strings");
     json.push('\n');
     write_file(&folder.join("summary.json"), json.as_bytes())?;
     let page = folder.join("campaign.html");
-    write_file(&page, html(title, duration_s, summary, rows)?.as_bytes())?;
+    write_file(&page, html(title, duration_s, summary, tally)?.as_bytes())?;
     Ok(page)
 }
 
-fn html(title: &str, duration_s: f64, summary: &Summary, rows: &[Row]) -> Result<String, ReportError> {
+fn html(title: &str, duration_s: f64, summary: &Summary, tally: &Tally) -> Result<String, ReportError> {
     let start = "Share of good flights over where they started; bars from 0 to 1, the number of flights above.";
     let success = drawing("success", start, (1000, 330), |area| {
         let parts = area.split_evenly((1, 2));
-        share(&parts[0], "distance at the start, m", rows, |row| row.start_distance_m)?;
-        share(&parts[1], "speed at the start, m/s", rows, |row| row.start_speed)
+        share(&parts[0], "distance at the start, m", tally, &tally.start_distance_m)?;
+        share(&parts[1], "speed at the start, m/s", tally, &tally.start_speed)
     })?;
     let drawn = "The same over payload and wind.";
     let success_2 = drawing("success-drawn", drawn, (1000, 330), |area| {
         let parts = area.split_evenly((1, 2));
-        share(&parts[0], "payload, kg", rows, |row| row.payload_mass)?;
-        share(&parts[1], "mean wind, m/s", rows, |row| row.wind)
+        share(&parts[0], "payload, kg", tally, &tally.payload_mass)?;
+        share(&parts[1], "mean wind, m/s", tally, &tally.wind)
     })?;
     let percentile = "Percentiles of the distance from the path over the flights; one that ended early counts 100 m.";
     let over_time = drawing("distance", percentile, (1000, 380), |area| {
-        time_log(area, "d_C, m", 1e-4, &percentiles(duration_s, rows), &[])
+        time_log(area, "d_C, m", 1e-4, &percentiles(duration_s, tally), &[])
     })?;
     let least = "Least margins of each flight: flights by how near they came to a singularity, which is at zero.";
     let margins = drawing("margins", least, (1000, 330), |area| {
         let parts = area.split_evenly((1, 3));
-        histogram(&parts[0], "least q·e3", rows, |row| row.least_q3)?;
-        histogram(&parts[1], "least q·b3", rows, |row| row.least_q_b3)?;
-        histogram(&parts[2], "least tension, N", rows, |row| row.least_tension)
+        histogram(&parts[0], "least q·e3", tally, &tally.least_q3)?;
+        histogram(&parts[1], "least q·b3", tally, &tally.least_q_b3)?;
+        histogram(&parts[2], "least tension, N", tally, &tally.least_tension)
     })?;
     let heading = if title.is_empty() { "Campaign" } else { title };
     Ok(html! {
@@ -62,7 +62,7 @@ fn html(title: &str, duration_s: f64, summary: &Summary, rows: &[Row]) -> Result
             body {
                 main {
                     h1 { (heading) }
-                    pre tabindex="0" { (summary.text(rows)) }
+                    pre tabindex="0" { (summary.text()) }
                     (figure("success", &success, start))
                     (figure("success-drawn", &success_2, drawn))
                     (figure("distance", &over_time, percentile))
@@ -104,13 +104,7 @@ fn failures(summary: &Summary) -> Markup {
 }
 
 /// d_C's percentiles at the instants that rows have.
-fn percentiles(duration_s: f64, rows: &[Row]) -> Vec<Curve> {
-    let mut at: Vec<Vec<f64>> = vec![Vec::new(); INSTANTS];
-    for row in rows {
-        for (slot, text) in at.iter_mut().zip(row.dc_over_time_m.split(';')) {
-            slot.extend(text.parse::<f64>());
-        }
-    }
+fn percentiles(duration_s: f64, tally: &Tally) -> Vec<Curve> {
     let shares = [("median", 0.5), ("90 %", 0.9), ("99 %", 0.99), ("99.9 %", 0.999)];
     shares
         .into_iter()
@@ -118,8 +112,8 @@ fn percentiles(duration_s: f64, rows: &[Row]) -> Vec<Curve> {
         .map(|((label, share), colour)| Curve {
             label: label.to_owned(),
             points: (0..)
-                .zip(&mut at)
-                .map(|(i, values)| (duration_s * f64::from(i) / INSTANTS as f64, percentile(values, share)))
+                .zip(&tally.dc_over_time_m)
+                .map(|(i, values)| (duration_s * f64::from(i) / INSTANTS as f64, values.percentile(share)))
                 .collect(),
             colour,
         })
@@ -129,35 +123,31 @@ fn percentiles(duration_s: f64, rows: &[Row]) -> Vec<Curve> {
 /// Bars of a histogram or of shares.
 const BINS: usize = 10;
 
-/// The bins of `value` over its range: edges and rows.
-fn bins(rows: &[Row], value: fn(&Row) -> f64) -> (f64, f64, Vec<Vec<&Row>>) {
-    let finite = || rows.iter().map(value).filter(|value| value.is_finite());
+/// The bins of values over their range: its least, a bin's width, and in each the flights and the
+/// good ones among them.
+fn bins(values: &[f64], good: &[bool]) -> (f64, f64, [[usize; 2]; BINS]) {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
     let (low, width) =
         if high > low { (low, (high - low) / BINS as f64) } else { (finite().next().unwrap_or(0.0), 1.0) };
-    let mut bins = vec![Vec::new(); BINS];
-    for row in rows.iter().filter(|row| value(row).is_finite()) {
-        let bin = ((value(row) - low) / width) as usize;
-        bins[bin.min(BINS - 1)].push(row);
+    let mut bins = [[0; 2]; BINS];
+    for (value, good) in values.iter().zip(good).filter(|(value, _)| value.is_finite()) {
+        let [all, among] = &mut bins[(((value - low) / width) as usize).min(BINS - 1)];
+        *all += 1;
+        *among += usize::from(*good);
     }
     (low, width, bins)
 }
 
-fn share(area: &Area<'_>, quantity: &str, rows: &[Row], value: fn(&Row) -> f64) -> Drawn {
-    let (low, width, bins) = bins(rows, value);
-    let bars = bins
-        .iter()
-        .map(|bin| {
-            let good = bin.iter().filter(|row| row.verdict == Verdict::Good).count();
-            (good as f64 / bin.len().max(1) as f64, bin.len())
-        })
-        .collect::<Vec<_>>();
+fn share(area: &Area<'_>, quantity: &str, tally: &Tally, values: &[f64]) -> Drawn {
+    let (low, width, bins) = bins(values, &tally.good);
+    let bars = bins.map(|[all, good]| (good as f64 / all.max(1) as f64, all));
     columns(area, quantity, "share of good flights", low, width, 1.15, &bars)
 }
 
-fn histogram(area: &Area<'_>, quantity: &str, rows: &[Row], value: fn(&Row) -> f64) -> Drawn {
-    let (low, width, bins) = bins(rows, value);
-    let bars: Vec<(f64, usize)> = bins.iter().map(|bin| (bin.len() as f64, bin.len())).collect();
+fn histogram(area: &Area<'_>, quantity: &str, tally: &Tally, values: &[f64]) -> Drawn {
+    let (low, width, bins) = bins(values, &tally.good);
+    let bars = bins.map(|[all, _]| (all as f64, all));
     let top = bars.iter().fold(1.0_f64, |top, bar| top.max(bar.0));
     columns(area, quantity, "flights", low, width, 1.15 * top, &bars)
 }

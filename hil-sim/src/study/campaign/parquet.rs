@@ -3,15 +3,16 @@
 
 use parquet::basic::Compression;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
-use parquet::errors::Result;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::parser::parse_message_type;
 use serde_json::{Map, Value};
+use std::io::Write;
 use std::sync::Arc;
 
 use super::fly::Row;
+use super::store::StoreError;
 
 /// What a column holds.
 #[derive(Clone, Copy, PartialEq)]
@@ -62,11 +63,25 @@ const COLUMNS: [Column; 30] = [
 /// Rows held at once as columns.
 const GROUP: usize = 65_536;
 
-/// These rows as a Parquet file.
+/// A table that can't be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ParquetError {
+    /// Its rows.
+    #[error(transparent)]
+    Rows(#[from] StoreError),
+    /// Its file.
+    #[error(transparent)]
+    File(#[from] parquet::errors::ParquetError),
+}
+
+/// Writes rows as a Parquet file.
 ///
 /// # Errors
-/// Of the encoder.
-pub fn encode(rows: &[Row]) -> Result<Vec<u8>> {
+/// Those of the rows, of the encoder and of the file.
+pub fn write(
+    file: impl Write + Send,
+    rows: impl Iterator<Item = Result<Row, StoreError>>,
+) -> Result<(), ParquetError> {
     let fields = COLUMNS.map(|(name, kind, ..)| match kind {
         Kind::Integer => format!("required int64 {name};"),
         Kind::Number => format!("optional double {name};"),
@@ -86,50 +101,98 @@ pub fn encode(rows: &[Row]) -> Result<Vec<u8>> {
         .set_created_by(concat!("hil-sim ", env!("CARGO_PKG_VERSION")).to_owned())
         .set_key_value_metadata(Some(vec![described("units", |c| c.2), described("descriptions", |c| c.3)]))
         .build();
-    let mut bytes = Vec::new();
-    let mut file = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties))?;
-    for rows in rows.chunks(GROUP) {
-        let rows: Vec<Value> = rows.iter().map(|row| serde_json::to_value(row).unwrap_or_default()).collect();
+    let mut file = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
+    let mut group = Group::new();
+    for row in rows {
+        group.add(&row?);
+        if group.rows == GROUP {
+            group.write(&mut file)?;
+            group = Group::new();
+        }
+    }
+    if group.rows > 0 {
+        group.write(&mut file)?;
+    }
+    file.close()?;
+    Ok(())
+}
+
+/// Rows held as columns until they are written.
+struct Group {
+    rows: usize,
+    columns: [Cells; COLUMNS.len()],
+}
+
+/// A column's cells, with the levels by which Parquet knows which of them are there.
+enum Cells {
+    Integers(Vec<i64>),
+    Numbers { values: Vec<f64>, there: Vec<i16> },
+    Texts(Vec<ByteArray>),
+    Lists { values: Vec<f64>, there: Vec<i16>, inside: Vec<i16> },
+}
+
+impl Group {
+    fn new() -> Self {
+        let columns = COLUMNS.map(|(_, kind, ..)| match kind {
+            Kind::Integer => Cells::Integers(Vec::new()),
+            Kind::Number => Cells::Numbers { values: Vec::new(), there: Vec::new() },
+            Kind::Text => Cells::Texts(Vec::new()),
+            Kind::List => Cells::Lists { values: Vec::new(), there: Vec::new(), inside: Vec::new() },
+        });
+        Self { rows: 0, columns }
+    }
+
+    fn add(&mut self, row: &Row) {
+        let row = serde_json::to_value(row).unwrap_or_default();
+        for (cells, (name, ..)) in self.columns.iter_mut().zip(COLUMNS) {
+            cells.add(&row[name]);
+        }
+        self.rows += 1;
+    }
+
+    fn write<W: Write + Send>(&self, file: &mut SerializedFileWriter<W>) -> parquet::errors::Result<()> {
         let mut group = file.next_row_group()?;
-        for (name, kind, ..) in COLUMNS {
+        for cells in &self.columns {
             let Some(mut column) = group.next_column()? else { break };
-            let cells = rows.iter().map(|row| &row[name]);
-            match kind {
-                Kind::Integer => {
-                    let values: Vec<i64> = cells.map(|cell| cell.as_i64().unwrap_or_default()).collect();
-                    column.typed::<Int64Type>().write_batch(&values, None, None)?;
+            match cells {
+                Cells::Integers(values) => column.typed::<Int64Type>().write_batch(values, None, None)?,
+                Cells::Numbers { values, there } => {
+                    column.typed::<DoubleType>().write_batch(values, Some(there), None)?
                 }
-                Kind::Number => {
-                    // JSON has no NaN and no infinity: null here, too.
-                    let there: Vec<i16> = cells.clone().map(|cell| i16::from(cell.is_number())).collect();
-                    let values: Vec<f64> = cells.filter_map(Value::as_f64).collect();
-                    column.typed::<DoubleType>().write_batch(&values, Some(&there), None)?;
+                Cells::Texts(values) => column.typed::<ByteArrayType>().write_batch(values, None, None)?,
+                Cells::Lists { values, there, inside } => {
+                    column.typed::<DoubleType>().write_batch(values, Some(there), Some(inside))?
                 }
-                Kind::Text => {
-                    let values: Vec<ByteArray> = cells.map(|cell| cell.as_str().unwrap_or_default().into()).collect();
-                    column.typed::<ByteArrayType>().write_batch(&values, None, None)?;
-                }
-                Kind::List => {
-                    let (mut values, mut there, mut inside) = (Vec::<f64>::new(), Vec::new(), Vec::new());
-                    for cell in cells {
-                        let numbers =
-                            cell.as_str().unwrap_or_default().split(';').filter_map(|text| text.parse::<f64>().ok());
-                        let before = values.len();
-                        values.extend(numbers);
-                        let count = values.len() - before;
-                        // An empty list is an entry without a value.
-                        there.extend(std::iter::repeat_n(i16::from(count > 0), count.max(1)));
-                        inside.extend((0..count.max(1)).map(|place| i16::from(place > 0)));
-                    }
-                    column.typed::<DoubleType>().write_batch(&values, Some(&there), Some(&inside))?;
-                }
-            }
+            };
             column.close()?;
         }
         group.close()?;
+        Ok(())
     }
-    file.close()?;
-    Ok(bytes)
+}
+
+impl Cells {
+    fn add(&mut self, cell: &Value) {
+        match self {
+            Self::Integers(values) => values.push(cell.as_i64().unwrap_or_default()),
+            // JSON has no NaN and no infinity: null here, too.
+            Self::Numbers { values, there } => {
+                there.push(i16::from(cell.is_number()));
+                values.extend(cell.as_f64());
+            }
+            Self::Texts(values) => values.push(cell.as_str().unwrap_or_default().into()),
+            Self::Lists { values, there, inside } => {
+                let numbers =
+                    cell.as_str().unwrap_or_default().split(';').filter_map(|text| text.parse::<f64>().ok());
+                let before = values.len();
+                values.extend(numbers);
+                let count = values.len() - before;
+                // An empty list is an entry without a value.
+                there.extend(std::iter::repeat_n(i16::from(count > 0), count.max(1)));
+                inside.extend((0..count.max(1)).map(|place| i16::from(place > 0)));
+            }
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use statrs::function::beta::inv_beta_reg;
 
-use super::fly::Row;
+use super::tally::Tally;
 
 /// Probability that an interval holds the true rate, at the least.
 pub const CONFIDENCE: f64 = 0.95;
@@ -19,17 +19,17 @@ pub fn interval(count: usize, of: usize) -> [f64; 2] {
     [low, high]
 }
 
-/// A drawn number: what it is, and where a row has it.
-type Drawn = (&'static str, fn(&Row) -> f64);
+/// A drawn number: what it is, and its column.
+type Drawn = (&'static str, fn(&Tally) -> &[f64]);
 
-/// What a campaign draws, as its rows have it.
+/// What a campaign draws, as its tally has it.
 const DRAWN: [Drawn; 6] = [
-    ("distance at the start", |row| row.start_distance_m),
-    ("speed at the start", |row| row.start_speed),
-    ("tilt at the start", |row| row.start_tilt_deg),
-    ("rod angle at the start", |row| row.start_rod_deg),
-    ("payload", |row| row.payload_mass),
-    ("mean wind", |row| row.wind),
+    ("distance at the start", |tally| &tally.start_distance_m),
+    ("speed at the start", |tally| &tally.start_speed),
+    ("tilt at the start", |tally| &tally.start_tilt_deg),
+    ("rod angle at the start", |tally| &tally.start_rod_deg),
+    ("payload", |tally| &tally.payload_mass),
+    ("mean wind", |tally| &tally.wind),
 ];
 
 /// Bins of equally many flights.
@@ -43,24 +43,24 @@ const LEAST: usize = 5;
 /// It sees dependences that are not monotonous, as on a mass that may be too small or too large.
 /// Empty where there are too few flights to say.
 #[must_use]
-pub fn sensitivity(rows: &[Row]) -> Vec<(&'static str, f64)> {
-    let n = rows.len();
+pub fn sensitivity(tally: &Tally) -> Vec<(&'static str, f64)> {
+    let n = tally.dc_max_m.len();
     if n < BINS * LEAST {
         return Vec::new();
     }
-    let distance = ranks(rows, |row| row.dc_max_m);
+    let distance = ranks(&tally.dc_max_m);
     let middle = 0.5 * (n as f64 - 1.0);
     let total: f64 = distance.iter().map(|rank| (rank - middle).powi(2)).sum();
     let mut found: Vec<(&str, f64)> = DRAWN
         .into_iter()
-        .filter(|(_, value)| rows.iter().any(|row| value(row) != value(&rows[0])))
-        .map(|(name, value)| {
-            let mut order: Vec<usize> = (0..n).collect();
-            order.sort_by(|&a, &b| value(&rows[a]).total_cmp(&value(&rows[b])));
+        .map(|(name, column)| (name, column(tally)))
+        .filter(|(_, values)| values.iter().any(|value| *value != values[0]))
+        .map(|(name, values)| {
+            let order = order(values);
             let between: f64 = (0..BINS)
                 .map(|bin| {
                     let bin = &order[bin * n / BINS..(bin + 1) * n / BINS];
-                    let mean = bin.iter().map(|&row| distance[row]).sum::<f64>() / bin.len() as f64;
+                    let mean = bin.iter().map(|&flight| distance[flight]).sum::<f64>() / bin.len() as f64;
                     bin.len() as f64 * (mean - middle).powi(2)
                 })
                 .sum();
@@ -72,15 +72,20 @@ pub fn sensitivity(rows: &[Row]) -> Vec<(&'static str, f64)> {
     found
 }
 
-/// The place of each row in the order of its values, from 0; equal ones share theirs.
-fn ranks(rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..rows.len()).collect();
-    order.sort_by(|&a, &b| value(&rows[a]).total_cmp(&value(&rows[b])));
-    let mut ranks = vec![0.0; rows.len()];
+/// The flights in the order of their values.
+fn order(values: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    order
+}
+
+/// The place of each flight in the order of values, from 0; equal ones share theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut ranks = vec![0.0; values.len()];
     let mut first = 0;
-    for equal in order.chunk_by(|&a, &b| value(&rows[a]).total_cmp(&value(&rows[b])).is_eq()) {
-        for &row in equal {
-            ranks[row] = first as f64 + 0.5 * (equal.len() as f64 - 1.0);
+    for equal in order(values).chunk_by(|&a, &b| values[a].total_cmp(&values[b]).is_eq()) {
+        for &flight in equal {
+            ranks[flight] = first as f64 + 0.5 * (equal.len() as f64 - 1.0);
         }
         first += equal.len();
     }
@@ -89,6 +94,7 @@ fn ranks(rows: &[Row], value: fn(&Row) -> f64) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::fly::Row;
     use super::*;
 
     #[test]
@@ -119,15 +125,14 @@ mod tests {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1_u64 << 53) as f64
         };
-        let rows: Vec<Row> = (0..4000)
-            .map(|_| {
-                let (payload_mass, wind, start_speed) = (random(), random(), random());
-                // Not monotonous in the mass.
-                let dc_max_m = (payload_mass - 0.5).abs() + 0.2 * wind;
-                Row { payload_mass, wind, start_speed, dc_max_m, ..Row::nothing() }
-            })
-            .collect();
-        let found = sensitivity(&rows);
+        let mut tally = Tally::default();
+        for _ in 0..4000 {
+            let (payload_mass, wind, start_speed) = (random(), random(), random());
+            // Not monotonous in the mass.
+            let dc_max_m = (payload_mass - 0.5).abs() + 0.2 * wind;
+            tally.add(&Row { payload_mass, wind, start_speed, dc_max_m, ..Row::nothing() });
+        }
+        let found = sensitivity(&tally);
         assert_eq!(found.iter().map(|(name, _)| *name).take(2).collect::<Vec<_>>(), ["payload", "mean wind"]);
         // Of the sum's variance, 0.25/12 and 0.04/12, the mass has 86 %.
         assert!((found[0].1 - 0.86).abs() < 0.05 && found[1].1 < 0.2, "{found:?}");

@@ -2,10 +2,12 @@
 //! number of threads or interruptions.
 
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Display;
 use std::fs::{File, OpenOptions};
-use std::io::{self, BufWriter};
+use std::io::{self, BufRead, BufReader, BufWriter, Seek, SeekFrom};
+use std::iter::StepBy;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::fly::Row;
@@ -59,7 +61,7 @@ impl Shard {
     pub const WHOLE: Self = Self { index: 0, of: 1 };
 
     /// The flights of this part, in order.
-    pub fn runs(self, runs: u64) -> impl Iterator<Item = u64> {
+    pub fn runs(self, runs: u64) -> StepBy<Range<u64>> {
         (self.index..runs).step_by(self.of.max(1) as usize)
     }
 }
@@ -85,25 +87,26 @@ pub enum StoreError {
     },
 }
 
-/// A folder's table.
+/// A folder's table, under way.
 pub struct Store {
     path: PathBuf,
     writer: csv::Writer<BufWriter<File>>,
 }
 
 impl Store {
-    /// Opens the table of `identity` in `folder`, with the rows that are there already. A torn last
-    /// line is cut off.
+    /// Opens the table of `identity` in `folder`, and counts the flights that are there already. A
+    /// torn last line is cut off.
     ///
     /// # Errors
     /// [`StoreError`] if the folder holds another campaign's results, or cannot be read or written.
-    pub fn open(folder: &Path, identity: &Identity) -> Result<(Self, Vec<Row>), StoreError> {
+    pub fn open(folder: &Path, identity: &Identity) -> Result<(Self, usize), StoreError> {
         let path = folder.join("runs.csv");
         let fail = |error| StoreError::File { path: path.clone(), error };
         std::fs::create_dir_all(folder).map_err(fail)?;
         let known = folder.join("campaign.json");
-        let rows = match read_identity(folder)? {
-            Some(other) if other == *identity => read_rows(&path, identity)?,
+        let mut rows = Rows::of(folder, identity);
+        match read_identity(folder)? {
+            Some(other) if other == *identity => {}
             Some(other) => {
                 let why = identity.differs(&other).unwrap_or_else(|| "the shard differs".to_owned());
                 let message =
@@ -118,123 +121,209 @@ impl Store {
                 let text = serde_json::to_string_pretty(identity).unwrap_or_default();
                 crate::report::write_file(&known, text.as_bytes())
                     .map_err(|error| StoreError::File { path: known.clone(), error: io::Error::other(error) })?;
-                Vec::new()
             }
-        };
-        // What is whole is written again in one piece, so that a torn line leaves no trace.
-        let mut text = encode(&rows);
-        if rows.is_empty() {
-            text = header();
         }
-        crate::report::write_file(&path, &text).map_err(|error| fail(io::Error::other(error)))?;
+        let done = rows.by_ref().try_fold(0, |done, row| row.map(|_| done + 1))?;
+        if done == 0 {
+            crate::report::write_file(&path, &header()).map_err(|error| fail(io::Error::other(error)))?;
+        }
         let file = OpenOptions::new().append(true).open(&path).map_err(fail)?;
+        if done > 0 {
+            file.set_len(rows.end).map_err(fail)?;
+        }
         let writer = csv::WriterBuilder::new().has_headers(false).from_writer(BufWriter::new(file));
-        Ok((Self { path, writer }, rows))
+        Ok((Self { path, writer }, done))
     }
 
-    /// Appends rows and has them reach the disk.
+    /// Appends a row; [`Store::flush`] has it reach the disk.
+    ///
+    /// # Errors
+    /// [`StoreError`] if it can't.
+    pub fn append(&mut self, row: &Row) -> Result<(), StoreError> {
+        let written = self.writer.serialize(row);
+        written.map_err(|error| StoreError::File { path: self.path.clone(), error: io::Error::other(error) })
+    }
+
+    /// Has all rows reach the disk.
     ///
     /// # Errors
     /// [`StoreError`] if they do not.
-    pub fn append(&mut self, rows: &[Row]) -> Result<(), StoreError> {
-        let written = rows.iter().try_for_each(|row| self.writer.serialize(row).map_err(io::Error::other));
-        written
-            .and_then(|()| self.writer.flush())
-            .map_err(|error| StoreError::File { path: self.path.clone(), error })
+    pub fn flush(&mut self) -> Result<(), StoreError> {
+        self.writer.flush().map_err(|error| StoreError::File { path: self.path.clone(), error })
     }
 }
 
 fn read_identity(folder: &Path) -> Result<Option<Identity>, StoreError> {
     let path = folder.join("campaign.json");
-    match std::fs::read_to_string(&path) {
-        Ok(text) => serde_json::from_str(&text)
-            .map(Some)
-            .map_err(|error| StoreError::Contents { path, message: error.to_string() }),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(StoreError::File { path, error }),
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(StoreError::File { path, error }),
+    };
+    match serde_json::from_str::<Identity>(&text) {
+        Ok(identity) if identity.shard.index < identity.shard.of => Ok(Some(identity)),
+        Ok(Identity { shard: Shard { index, of }, .. }) => {
+            let message = format!("shard.index {index} is not below shard.of {of}");
+            Err(StoreError::Contents { path, message })
+        }
+        Err(error) => Err(StoreError::Contents { path, message: error.to_string() }),
     }
 }
 
 /// The whole rows of a table: the flights of the shard, in order, up to the first that is not
-/// there.
-fn read_rows(path: &Path, identity: &Identity) -> Result<Vec<Row>, StoreError> {
-    let text = match std::fs::read(path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(StoreError::File { path: path.to_owned(), error }),
-    };
-    let whole = text.iter().rposition(|&byte| byte == b'\n').map_or(0, |end| end + 1);
-    let mut reader = csv::Reader::from_reader(&text[..whole]);
-    let mut rows = Vec::new();
-    for (row, run) in reader.deserialize::<Row>().zip(identity.shard.runs(identity.runs)) {
-        let contents = |message: String| StoreError::Contents { path: path.to_owned(), message };
-        let row = row.map_err(|error| contents(error.to_string()))?;
-        if row.run != run {
-            return Err(contents(format!("flight {} stands where {run} should", row.run)));
-        }
-        rows.push(row);
-    }
-    Ok(rows)
+/// there. Few are held at once, and no file is open in between, so that a merge's memory does not
+/// grow with its flights, nor its open files with its shards.
+pub struct Rows {
+    path: PathBuf,
+    /// Flights that are still to come.
+    runs: StepBy<Range<u64>>,
+    /// Rows that have been read, and where each ends in the file.
+    ahead: VecDeque<(Row, u64)>,
+    /// Where the last row that was returned ends in the file.
+    end: u64,
 }
 
-/// Puts the tables of all shards of one campaign together.
+impl Rows {
+    /// Rows read at once.
+    const BLOCK: usize = 64;
+
+    /// The rows of the campaign, or part of one, `identity` in `folder`.
+    #[must_use]
+    pub fn of(folder: &Path, identity: &Identity) -> Self {
+        let runs = identity.shard.runs(identity.runs);
+        Self { path: folder.join("runs.csv"), runs, ahead: VecDeque::new(), end: 0 }
+    }
+
+    fn contents(&self, message: String) -> StoreError {
+        StoreError::Contents { path: self.path.clone(), message }
+    }
+
+    /// Reads what comes next, up to a line that is not whole.
+    fn read_ahead(&mut self) -> Result<(), StoreError> {
+        let mut lines = self.lines().map_err(|error| StoreError::File { path: self.path.clone(), error })?;
+        let mut end = self.end;
+        if end == 0 && !lines.is_empty() {
+            let names = lines.remove(0);
+            if names != header() {
+                return Err(self.contents("its first line does not name the columns of this program".to_owned()));
+            }
+            end += names.len() as u64;
+        }
+        let text = lines.concat();
+        let mut rows = csv::ReaderBuilder::new().has_headers(false).from_reader(text.as_slice()).into_deserialize();
+        for line in lines {
+            let Some(Ok(row)) = rows.next() else {
+                let line = String::from_utf8_lossy(&line);
+                return Err(self.contents(format!("no flight of a campaign: {:?}", line.trim_end())));
+            };
+            end += line.len() as u64;
+            self.ahead.push_back((row, end));
+        }
+        Ok(())
+    }
+
+    /// The next lines that are whole.
+    fn lines(&self) -> io::Result<Vec<Vec<u8>>> {
+        let mut file = match File::open(&self.path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+            file => file?,
+        };
+        file.seek(SeekFrom::Start(self.end))?;
+        let mut file = BufReader::new(file);
+        let mut lines = Vec::with_capacity(Self::BLOCK);
+        while lines.len() < Self::BLOCK {
+            let mut line = Vec::new();
+            file.read_until(b'\n', &mut line)?;
+            if line.last() != Some(&b'\n') {
+                break;
+            }
+            lines.push(line);
+        }
+        Ok(lines)
+    }
+}
+
+impl Iterator for Rows {
+    type Item = Result<Row, StoreError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.ahead.is_empty()
+            && let Err(error) = self.read_ahead()
+        {
+            return Some(Err(error));
+        }
+        let (row, end) = self.ahead.pop_front()?;
+        let run = self.runs.next()?;
+        if row.run != run {
+            return Some(Err(self.contents(format!("flight {} stands where {run} should", row.run))));
+        }
+        self.end = end;
+        Some(Ok(row))
+    }
+}
+
+/// Puts the tables of all shards of one campaign together in the folder `into`, row by row.
 ///
 /// # Errors
 /// [`StoreError`] if they are not the shards of one campaign, all there, once, and complete, or a
-/// file cannot be read. It names every folder that is not complete, and every shard that is
-/// missing.
-pub fn merge(folders: &[PathBuf]) -> Result<(Identity, Vec<Row>), StoreError> {
+/// file cannot be read or written. It names every folder that is not complete, and every shard that
+/// is missing.
+pub fn merge(folders: &[PathBuf], into: &Path) -> Result<Identity, StoreError> {
     let wrong = |folder: &Path, message: String| StoreError::Contents { path: folder.to_owned(), message };
     let merged = |message: String| wrong(Path::new("merge"), message);
     let mut whole: Option<Identity> = None;
-    let mut places: BTreeMap<u64, &Path> = BTreeMap::new();
-    let (mut rows, mut incomplete) = (Vec::new(), Vec::new());
+    let mut shards: BTreeMap<u64, (&Path, Rows)> = BTreeMap::new();
+    let mut incomplete = Vec::new();
     for folder in folders {
         let identity =
             read_identity(folder)?.ok_or_else(|| wrong(folder, "there are no results of a campaign".to_owned()))?;
         let Shard { index, of } = identity.shard;
-        let found = read_rows(&folder.join("runs.csv"), &identity)?;
+        let found = Rows::of(folder, &identity).try_fold(0, |found, row| row.map(|_| found + 1))?;
         let expected = identity.shard.runs(identity.runs).count();
-        if found.len() != expected {
-            incomplete.push(format!("{} has {} of its {expected} flights", folder.display(), found.len()));
+        if found != expected {
+            incomplete.push(format!("{} has {found} of its {expected} flights", folder.display()));
         }
+        let rows = Rows::of(folder, &identity);
         // All but which part of it.
         let identity = Identity { shard: Shard { index: 0, of }, ..identity };
         if let Some(why) = whole.get_or_insert_with(|| identity.clone()).differs(&identity) {
             return Err(wrong(folder, format!("not of the same campaign: {why}")));
         }
-        if let Some(other) = places.insert(index, folder) {
+        if let Some((other, _)) = shards.insert(index, (folder, rows)) {
             return Err(wrong(
                 folder,
                 format!("shard {}/{of} again, which {} holds, too", index + 1, other.display()),
             ));
         }
-        rows.extend(found);
     }
     let identity = whole.ok_or_else(|| merged("no folders".to_owned()))?;
     let of = identity.shard.of;
     let missing = (0..of)
-        .filter(|index| !places.contains_key(index))
+        .filter(|index| !shards.contains_key(index))
         .map(|index| format!("shard {}/{of} is missing", index + 1));
     incomplete.extend(missing);
     if !incomplete.is_empty() {
         return Err(merged(format!("{}: the same `campaign` command flies what is left", incomplete.join("; "))));
     }
-    rows.sort_by_key(|row| row.run);
-    Ok((Identity { shard: Shard::WHOLE, ..identity }, rows))
-}
-
-fn encode(rows: &[Row]) -> Vec<u8> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row).expect("plain fields into memory");
+    let identity = Identity { shard: Shard::WHOLE, ..identity };
+    let (mut store, done) = Store::open(into, &identity)?;
+    let mut shards: Vec<(&Path, Rows)> = shards.into_values().collect();
+    for run in 0..identity.runs {
+        let (folder, rows) = &mut shards[(run % of) as usize];
+        let row = rows.next().ok_or_else(|| wrong(folder, format!("flight {run} is not there any more")))??;
+        if run >= done as u64 {
+            store.append(&row)?;
+        }
     }
-    writer.into_inner().expect("a vector can be flushed")
+    store.flush()?;
+    Ok(identity)
 }
 
-/// The line of names alone.
+/// The line of the columns' names.
 fn header() -> Vec<u8> {
-    let mut text = encode(std::slice::from_ref(&Row::nothing()));
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.serialize(Row::nothing()).expect("plain fields into memory");
+    let mut text = writer.into_inner().expect("a vector can be flushed");
     text.truncate(text.iter().position(|&byte| byte == b'\n').map_or(0, |end| end + 1));
     text
 }

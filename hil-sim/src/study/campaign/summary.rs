@@ -7,6 +7,7 @@ use std::fmt::Write;
 
 use super::fly::{Row, Verdict};
 use super::statistics::{interval, sensitivity};
+use super::tally::Tally;
 use crate::study::compare::{length, percentile};
 
 /// The shares of flights whose d_C is told.
@@ -14,7 +15,7 @@ const SHARES: [(&str, f64); 6] =
     [("p50", 0.5), ("p90", 0.9), ("p95", 0.95), ("p99", 0.99), ("p99_9", 0.999), ("max", 1.0)];
 
 /// The numbers of a campaign, as `summary.json` has them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Summary {
     /// Flights.
     pub runs: usize,
@@ -62,6 +63,9 @@ pub struct Summary {
     pub faults: BTreeMap<String, usize>,
     /// Every flight that failed, with its reason.
     pub failures: Vec<Failure>,
+    /// The flights of the largest d_C, it first.
+    #[serde(skip)]
+    pub worst: Vec<Row>,
 }
 
 /// A flight that failed.
@@ -79,62 +83,79 @@ pub struct Failure {
     pub dc_max_m: f64,
 }
 
-/// Sums up a campaign's rows.
-#[must_use]
-pub fn summarize(seed: u64, rows: &[Row]) -> Summary {
-    let count = |verdicts: &[Verdict]| rows.iter().filter(|row| verdicts.contains(&row.verdict)).count();
-    let percentiles = |values: Vec<f64>| {
-        let mut values = values;
-        SHARES.into_iter().map(|(name, share)| (name, percentile(&mut values, share))).collect()
-    };
-    let mut faults = BTreeMap::new();
-    for row in rows.iter().filter(|row| !row.first_fault.is_empty()) {
-        *faults.entry(row.first_fault.clone()).or_default() += 1;
+/// Sums up a campaign's flights, and keeps what its page shows of them.
+///
+/// # Errors
+/// The first that `rows` has.
+pub fn summarize<E>(seed: u64, rows: impl IntoIterator<Item = Result<Row, E>>) -> Result<(Summary, Tally), E> {
+    let (mut summary, mut tally) = (Summary { seed, ..Summary::default() }, Tally::default());
+    for row in rows {
+        let row = row?;
+        tally.add(&row);
+        summary.count(row);
     }
-    let good = count(&[Verdict::Good]);
-    let worst = |value: fn(&Row) -> Option<f64>| rows.iter().filter_map(value).reduce(f64::max);
-    Summary {
-        runs: rows.len(),
-        seed,
-        success_rate: good as f64 / rows.len().max(1) as f64,
-        success_interval: interval(good, rows.len()),
-        sensitivity: sensitivity(rows),
-        good,
-        held: count(&[Verdict::Held]),
-        off: count(&[Verdict::Off]),
-        crashed: count(&[Verdict::Crashed]),
-        lost: count(&[Verdict::Lost]),
-        non_finite: rows.iter().filter(|row| row.non_finite > 0 || row.verdict == Verdict::NonFinite).count(),
-        out_of_limits: rows.iter().filter(|row| row.out_of_limits > 0).count(),
-        fell_back: rows.iter().filter(|row| row.falls > 0).count(),
-        dc_max_m: percentiles(rows.iter().map(|row| row.dc_max_m).collect()),
-        dc_rms_m: percentiles(rows.iter().map(|row| row.dc_rms_m).collect()),
-        reached_s: percentiles(rows.iter().filter_map(|row| row.reached_s).collect()),
-        worst_uav_touchdown_m_s: worst(|row| row.uav_touchdown_m_s),
-        worst_load_touchdown_m_s: worst(|row| row.load_touchdown_m_s),
-        worst_load_place_m: worst(|row| row.load_place_m),
-        faults,
-        failures: rows
-            .iter()
-            .filter(|row| row.verdict != Verdict::Good)
-            .map(|row| Failure {
+    let Summary { good, runs, .. } = summary;
+    summary.success_rate = good as f64 / runs.max(1) as f64;
+    summary.success_interval = interval(good, runs);
+    summary.sensitivity = sensitivity(&tally);
+    summary.dc_max_m = percentiles(&tally.dc_max_m);
+    summary.dc_rms_m = percentiles(&tally.dc_rms_m);
+    summary.reached_s = percentiles(&tally.reached_s);
+    Ok((summary, tally))
+}
+
+fn percentiles(values: &[f64]) -> BTreeMap<&'static str, f64> {
+    let mut values = values.to_vec();
+    SHARES.into_iter().map(|(name, share)| (name, percentile(&mut values, share))).collect()
+}
+
+/// Worst flights told in the terminal.
+const TOLD: usize = 10;
+
+impl Summary {
+    /// Counts a flight in.
+    fn count(&mut self, row: Row) {
+        self.runs += 1;
+        *match row.verdict {
+            Verdict::Good => &mut self.good,
+            Verdict::Held => &mut self.held,
+            Verdict::Off => &mut self.off,
+            Verdict::Crashed => &mut self.crashed,
+            Verdict::Lost => &mut self.lost,
+            Verdict::NonFinite => &mut self.non_finite,
+        } += 1;
+        self.non_finite += usize::from(row.non_finite > 0 && row.verdict != Verdict::NonFinite);
+        self.out_of_limits += usize::from(row.out_of_limits > 0);
+        self.fell_back += usize::from(row.falls > 0);
+        for (worst, value) in [
+            (&mut self.worst_uav_touchdown_m_s, row.uav_touchdown_m_s),
+            (&mut self.worst_load_touchdown_m_s, row.load_touchdown_m_s),
+            (&mut self.worst_load_place_m, row.load_place_m),
+        ] {
+            *worst = [*worst, value].into_iter().flatten().reduce(f64::max);
+        }
+        if !row.first_fault.is_empty() {
+            *self.faults.entry(row.first_fault.clone()).or_default() += 1;
+        }
+        if row.verdict != Verdict::Good {
+            self.failures.push(Failure {
                 run: row.run,
                 verdict: row.verdict,
                 mode: row.mode.clone(),
                 faults: [row.first_fault.clone(), row.last_fault.clone()],
                 dc_max_m: row.dc_max_m,
-            })
-            .collect(),
+            });
+        }
+        let place = self.worst.partition_point(|other| other.dc_max_m.total_cmp(&row.dc_max_m).is_ge());
+        if place < TOLD {
+            self.worst.truncate(TOLD - 1);
+            self.worst.insert(place, row);
+        }
     }
-}
 
-/// Failures and worst flights told in the terminal.
-const TOLD: usize = 10;
-
-impl Summary {
     /// For a terminal: shares, percentiles, worst flights, failures.
     #[must_use]
-    pub fn text(&self, rows: &[Row]) -> String {
+    pub fn text(&self) -> String {
         let mut text = String::new();
         let Self { runs, good, held, off, crashed, lost, non_finite, out_of_limits, fell_back, .. } = self;
         let _ = writeln!(
@@ -177,10 +198,8 @@ impl Summary {
                 shares.collect::<Vec<_>>().join(", ")
             );
         }
-        let mut worst: Vec<&Row> = rows.iter().collect();
-        worst.sort_by(|a, b| b.dc_max_m.total_cmp(&a.dc_max_m));
         let _ = writeln!(text, "worst flights (fly one again with --replay):");
-        for row in worst.into_iter().take(TOLD) {
+        for row in &self.worst {
             let _ = writeln!(
                 text,
                 "  {:>6}  {:?} in {}, d_C {}, from {:.1} m and {:.1} m/s, rod {:.0}°, tilt {:.0}°, {:.2} kg, wind {:.1} m/s{}{}",
