@@ -83,7 +83,7 @@ def pace():
     close(max(within), 1.0, 1e-12, "one limit is met, none exceeded")
 
 
-@covers("14.1", "14.2", "14.3", "14.4", "14.5", "14.8")
+@covers("14.1", "14.2", "14.3", "14.4", "14.5", "14.8", "14.9")
 def hold():
     car = TABLE_I
     for _ in range(20):
@@ -115,6 +115,16 @@ def hold():
             given = (sigma**2 + k_d * sigma + k_p) * (sigma**2 + omega**2) + sigma**2 * (k_s * sigma + k_q)
             wanted = (sigma**2 + 2 * d * sigma + omega**2) * (sigma + p) ** 2
             assert abs(given - wanted) < 1e-12 * abs(wanted), "(14.8)"
+    # (14.9): of a load at rest under g e3 + d with any error along the rod, its lean to the second order.
+    for lean in (0.01, 0.1, 0.3):
+        turn, along = RANDOM.uniform(0.0, 6.3), RANDOM.uniform(-5.0, 5.0)
+        level = Vec(math.cos(turn), math.sin(turn), 0.0)
+        wind = level * (car.g * math.tan(lean))
+        q = level * math.sin(lean) + E3 * math.cos(lean)
+        d = wind + q * along
+        found = (d - q * d.dot(q)) * (car.length / car.g)
+        found = found - E3 * found.dot(E3)
+        assert (found - level * (car.length * math.sin(lean))).norm() < car.length * lean**3, "(14.9)"
 
 
 @covers("14.6", "14.7")

@@ -294,6 +294,20 @@ fn what_is_asked_for_is_checked() {
     assert!(error("controller = { parameters = { VEH_M_LOAD = 1.0 } }").contains("VEH_M_LOAD"));
 }
 
+/// Loads on 10 to 12 m of rope that gusts carried half a metre to a metre away, while the UAV itself
+/// stayed where it was. What is left is the faster part of the gusts.
+#[test]
+fn a_load_on_a_long_rope_is_set_down_in_its_place_in_gusts() {
+    let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
+    for (batch, run) in [(1, 219), (2, 634), (2, 922)] {
+        let row = fly_run(&campaign, Seed { batch, run }, Control::alone(), &mut |_| {});
+        let row = row.unwrap().expect("nobody interrupts it");
+        println!("{batch}, {run}: {:?}", row.load_place_m);
+        assert_eq!(row.verdict, Verdict::Good, "{row:?}");
+        assert!(row.load_place_m.is_some_and(|distance| distance < IN_PLACE / 2.0), "{row:?}");
+    }
+}
+
 /// A few missions of the built-in campaign: any vehicle, rope, wind and wrong number.
 #[test]
 fn the_campaign_from_ground_to_ground_lands_in_its_place() {

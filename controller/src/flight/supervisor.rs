@@ -12,7 +12,7 @@ use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
 use crate::flight::payload::Payload;
 use crate::law::Law;
 use crate::law::approach::{ApproachLimits, Pace};
-use crate::law::hold::{Hold, Swing};
+use crate::law::hold::Hold;
 use crate::law::margins::{Margin, Margins};
 use crate::law::solution::{Answer, Solution};
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
@@ -122,6 +122,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
         Ok(Self {
+            hold: Hold::from(&vehicle, &Uav::of(sampler.state(), &vehicle), &sampler.swing()),
             sampler,
             law,
             envelope: Envelope::new(&vehicle, &envelope)?,
@@ -131,7 +132,6 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             request: Request::Off,
             fault: None,
             is_by_law: false,
-            hold: Hold::from(&vehicle, &Uav::of(&State::at_rest(Vector3::zeros()), &vehicle)),
             cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
@@ -548,7 +548,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     #[inline(never)]
     fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
-        self.hold = Hold::from(self.sampler.vehicle(), uav);
+        self.hold = Hold::from(self.sampler.vehicle(), uav, &self.sampler.swing());
         self.sampler.soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
@@ -591,17 +591,17 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let period = self.sampler.period();
         let (aimed, pull, swing, velocity) = if let Some(&Aim { uav, target, velocity, pull }) = aim {
             self.hold.aim(target, velocity);
-            (uav, pull, Swing::none(), velocity)
+            (uav, pull, None, velocity)
         } else {
             let velocity = self.wanted_velocity(state, now);
             let vehicle = self.sampler.vehicle();
             let taut = state.filter(|state| self.hangs(&(state.position - now.position)));
-            let swing = taut.map_or_else(Swing::none, |state| Swing::of(vehicle, state));
+            let swing = taut.map(|_| self.sampler.swing());
             (*now, self.cable.pull(vehicle), swing, velocity)
         };
         let vehicle = self.sampler.vehicle();
         let uav = self.sampler.look_ahead(&aimed, &pull);
-        let wanted = self.hold.step(vehicle, &uav, &pull, &swing, &velocity, period);
+        let wanted = self.hold.step(vehicle, &uav, &pull, swing.as_ref(), &velocity, period);
         if self.mode == Mode::Land {
             let may_hang = state.is_none_or(|state| self.may_hang(&(state.position - now.position)));
             match self.footing.feel(self.hold.left_above(now), now.body_rate.z, may_hang, period) {

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //! T b3 = m_Q (g e3 + f − a)
-//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s L q̇ + k_q L q     (the last two level, while the rod is trusted)
+//! a = −k_p sat(r − r*) − k_d (ṙ − ṙ*) − ∫k_i sat(r − r*) + k_s s˙ + k_q s,   s = L q − l    (s level, while the rod is trusted)
 //! ω̇ = k_R θ − k_ω ω,   T = f·b3,   T b3 within a cone about e3, θ the rotation from b3 to it
 //! ```
 //!
@@ -15,6 +15,9 @@
 //! faster than the pendulum ω = √(g/L) which hangs from the UAV, and k_s and k_q are what damps it
 //! by d (14.8): the load at y = r + L q obeys ÿ = −ω² L q, and a gives it the polynomial
 //! (s² + 2 d s + ω²)(s + p)².
+//!
+//! Wind lets the load hang at rest aside of the UAV, by the lean l (14.9). So that it is the load
+//! which stays where it is, r* is where the UAV would be in still air: in a, r + l stands for r.
 //!
 //! The target r* starts at the UAV and at its level velocity, which it loses over 1/p; a fall is
 //! stopped as hard as the rotors can.
@@ -31,6 +34,10 @@ const INTEGRAL: f64 = 0.3;
 const DAMPING: f64 = 0.3;
 /// k_q is all of (14.8) from this length on, m: the body turns too slowly for shorter pendulums.
 const LONG: f64 = 1.0;
+/// The lean follows what is observed of the wind by this, 1/s, and is at most this share of the
+/// cable: the wind a third of the load's weight.
+const LEANING: f64 = 2.0;
+const LEAN: f64 = 0.3;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
 /// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
@@ -51,11 +58,12 @@ const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
 
-/// What hangs from the UAV: L q and L q̇, m and m/s; zeros where the rod is not trusted.
+/// What hangs from the UAV: L q and L q̇, m and m/s, and where in the wind it would hang at rest, m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swing<T> {
     offset: Vector3<T>,
     rate: Vector3<T>,
+    lean: Vector3<T>,
 }
 
 /// k_p, k_d, k_i and p, of an axis.
@@ -80,14 +88,16 @@ pub(crate) struct Hold<T> {
     remainder: Vector3<T>,
     velocity: Vector3<T>,
     integral: Vector3<T>,
+    /// By how much the UAV is to be aside of its target, so that the load is not, m.
+    lean: Vector3<T>,
     /// The yaw rate that is wanted, rad/s.
     yaw_rate: T,
 }
 
 impl<T: Real> Hold<T> {
-    /// For `vehicle`, from where the UAV is and as fast as it is.
+    /// For `vehicle`, from where the UAV is and as fast as it is, with what is known of the `swing`.
     #[inline(never)]
-    pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>) -> Self {
+    pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>, swing: &Swing<T>) -> Self {
         let params = vehicle.params();
         let per_length = params.gravity / params.rod_length;
         let omega = per_length.sqrt();
@@ -100,22 +110,25 @@ impl<T: Real> Hold<T> {
             pole,
         };
         let yielding = damping * T::lit(2.0) * (pole * pole / per_length);
+        let lean = swing.lean;
         Self {
             vertical: gains(T::lit(POLE), T::zero()),
             level: gains(pole, yielding),
             swing_rate: damping * T::lit(2.0) - yielding,
             swing_offset: damping * pole * T::lit(4.0) * (params.rod_length / T::lit(LONG)).min(T::one()),
-            target: uav.position,
+            target: uav.position + lean,
             remainder: Vector3::zeros(),
             velocity: level(&uav.velocity),
             integral: Vector3::zeros(),
+            lean,
             yaw_rate: T::zero(),
         }
     }
 
-    /// The target, and how fast it moves, from now on.
+    /// The UAV's own target, and how fast it moves, from now on.
     pub(crate) fn aim(&mut self, target: Vector3<T>, velocity: Vector3<T>) {
         (self.target, self.velocity, self.remainder) = (target, velocity, Vector3::zeros());
+        self.lean = Vector3::zeros();
     }
 
     /// The yaw rate, rad/s, from now on.
@@ -125,7 +138,7 @@ impl<T: Real> Hold<T> {
 
     /// Whether the UAV is where it should be, to within what counts.
     pub(crate) fn has_settled(&self, uav: &Uav<T>) -> bool {
-        is_within(&(uav.position - self.target), T::lit(REACH * REACH))
+        is_within(&(uav.position + self.lean - self.target), T::lit(REACH * REACH))
     }
 
     /// How far, m, the UAV is above where it should be by now: more than a metre or two of it means
@@ -134,21 +147,28 @@ impl<T: Real> Hold<T> {
         self.target.z - uav.position.z
     }
 
-    /// The command at `uav` under a `pull` (m/s², per UAV mass), and the target one `period` (s)
-    /// on, on its way to `velocity` (N, m/s).
+    /// The command at `uav` under a `pull` (m/s², per UAV mass) and with the `swing`, where the rod is
+    /// trusted, and the target one `period` (s) on, on its way to `velocity` (N, m/s).
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
         uav: &Uav<T>,
         pull: &Vector3<T>,
-        swing: &Swing<T>,
+        swing: Option<&Swing<T>>,
         velocity: &Vector3<T>,
         period: T,
     ) -> Command<T> {
         let params = vehicle.params();
         let Uav { position, velocity: uav_velocity, attitude, body_rate: omega } = uav;
-        let error = limited(&(position - self.target), T::lit(REACH));
-        let rate_error = uav_velocity - self.velocity;
+        let (mut yielding, mut leaning) = (Vector3::zeros(), Vector3::zeros());
+        if let Some(Swing { offset, rate, lean }) = swing {
+            leaning = (lean - self.lean) * T::lit(LEANING);
+            let (offset, rate) = (offset - self.lean, rate - leaning);
+            yielding = level(&rate) * self.swing_rate + level(&offset) * self.swing_offset;
+        }
+        let error = limited(&(position + self.lean - self.target), T::lit(REACH));
+        let rate_error = uav_velocity + leaning - self.velocity;
+        self.lean += leaning * period;
         let along = |v: &Vector3<T>, gain: fn(&Gains<T>) -> T| {
             let (level, vertical) = (gain(&self.level), gain(&self.vertical));
             Vector3::new(v.x * level, v.y * level, v.z * vertical)
@@ -158,7 +178,7 @@ impl<T: Real> Hold<T> {
         if is_settling && integral.dot(&integral) < T::lit(INTEGRAL_BOUND * INTEGRAL_BOUND) {
             self.integral = integral;
         }
-        let acceleration = level(&swing.rate) * self.swing_rate + level(&swing.offset) * self.swing_offset
+        let acceleration = yielding
             - along(&error, |gains| gains.position)
             - along(&rate_error, |gains| gains.velocity)
             - self.integral;
@@ -211,16 +231,18 @@ impl<T: Real> Hold<T> {
 }
 
 impl<T: Real> Swing<T> {
-    /// Nothing that is trusted.
-    pub(crate) fn none() -> Self {
-        Self { offset: Vector3::zeros(), rate: Vector3::zeros() }
-    }
-
-    /// Of the rod of `state`, where it hangs.
-    pub(crate) fn of(vehicle: &Vehicle<T>, state: &State<T>) -> Self {
+    /// Of the rod of `state`, where it hangs, under the `wind` d on the load, m/s². Along the rod d is
+    /// of another weight or thrust than told, too.
+    #[inline(never)]
+    pub(crate) fn of(vehicle: &Vehicle<T>, state: &State<T>, wind: &Vector3<T>) -> Self {
         let length = vehicle.params().rod_length;
-        let mut swing =
-            Self { offset: state.rod * (length * state.rod.z.max(T::zero())), rate: state.rod_rate * length };
+        let across = wind - state.rod * state.rod.dot(wind);
+        let lean = level(&across) * (length / vehicle.params().gravity);
+        let mut swing = Self {
+            offset: state.rod * (length * state.rod.z.max(T::zero())),
+            rate: state.rod_rate * length,
+            lean: limited(&lean, length * T::lit(LEAN)),
+        };
         if state.rod.z < T::lit(BALANCED) {
             swing.offset.x = T::lit(TOPPLING);
             swing.rate.x += T::lit(TOPPLING);

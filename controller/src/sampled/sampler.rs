@@ -15,6 +15,7 @@ use nalgebra::Vector3;
 
 use crate::error::Refused;
 use crate::law::compensator::{continuing, propagate};
+use crate::law::hold::Swing;
 use crate::law::lift::lift;
 use crate::law::solution::Answer;
 use crate::law::{Ahead, Law};
@@ -317,6 +318,12 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[cold]
     pub(crate) fn keep(&mut self, known: Disturbance<T>) {
         self.memory.observer.keep(known);
+    }
+
+    /// What hangs from the UAV, as it was sampled last.
+    pub(crate) fn swing(&self) -> Swing<T> {
+        let Memory { vehicle, last, observer, .. } = &self.memory;
+        Swing::of(vehicle, last, &observer.estimate().payload)
     }
 
     /// The UAV where its command acts: its own position and velocity, after the time that attitude
