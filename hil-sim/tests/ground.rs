@@ -214,6 +214,37 @@ fn it_lands_softly_in_wind_with_wrong_masses_and_rotors() {
     }
 }
 
+/// Whatever fails while the load is on its way down, or is not as it was told, from take-off to
+/// rotors off.
+#[test]
+fn it_lands_softly_whatever_fails_on_the_way() {
+    for fault in [
+        "sensors = { position = { nan = { at_s = 2.0, for_s = 2.0 } } }",
+        "sensors = { position = { nan = { at_s = 42.0, for_s = 100.0 } } }",
+        "sensors = { rod = { freeze = { at_s = 25.0, for_s = 100.0 } } }",
+        "sensors = { rod = { drop_out = { at_s = 42.0, for_s = 100.0 } } }",
+        "sensors = { rod = { bias = [0.1, 0.05, 0.0] } }",
+        "sensors = { uav_position = { nan = { at_s = 42.0, for_s = 100.0 } } }",
+        "sensors = { uav_position = { freeze = { at_s = 44.0, for_s = 2.5 } } }",
+        "sensors = { body_rate = { nan = { at_s = 45.0, for_s = 1.0 } } }",
+        "sensors = { attitude = { freeze = { at_s = 45.0, for_s = 0.3 } } }",
+        "cable = { snagged = { at_s = 43.0, for_s = 3.0 } }",
+        "actuators = { latency_s = 0.04 }",
+        "actuators = { thrust_scale = 0.8 }",
+        "environment = { air = { wind = [4.0, 3.0, 0.0], gusts = { speed_at_6m = 8.0 } } }",
+        "environment = { payload_step = { at_s = 44.0, mass = 1.0 } }",
+    ] {
+        let mut touchdown = None;
+        let (end, modes) = flown(&scenario(WHOLE, fault), &mut |moment| touchdown = Some(*moment.touchdown));
+        assert!(matches!(end, End::Landed(_)), "{fault}: {end:?}, {modes:?}");
+        let touchdown = touchdown.expect("it was watched");
+        println!("{fault}: {touchdown:?}");
+        for speed in [touchdown.uav_m_s, touchdown.load_m_s] {
+            assert!(speed.is_some_and(|speed| speed < SOFT), "{fault}: {touchdown:?}");
+        }
+    }
+}
+
 /// A sensor that is lost or wrong for two seconds on the path costs less than a metre of height, m,
 /// and then the path is followed again.
 #[test]
