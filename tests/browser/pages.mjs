@@ -39,6 +39,8 @@ const rename = (from, to) => execFileSync("mv", [join(out, from), join(out, to)]
 rename("report.html", "minute.html");
 hil("run", scenario("ground.toml"));
 rename("report.html", "ground.html");
+hil("run", "a-to-b");
+rename("report.html", "route.html");
 hil("replay", join(out, "ground.csv"), "--with", scenario("ground.toml"));
 rename("report.html", "replayed.html");
 check("a lost flight ends with an error", spawnSync(program, ["run", "fig2a", "fig2b", scenario("lost.toml"), "--quiet", "--out", out]).status === 1);
@@ -80,7 +82,7 @@ const seek = (page, t) => page.evaluate((t) => {
 const clock = async (page) => parseFloat(await page.textContent("#clock"));
 
 for (const colorScheme of ["light", "dark"]) {
-  for (const file of ["report.html", "curves.html", "minute.html", "ground.html", "replayed.html", "replay-3.html", "campaign.html", "compare.html"]) {
+  for (const file of ["report.html", "curves.html", "minute.html", "ground.html", "replayed.html", "route.html", "replay-3.html", "campaign.html", "compare.html"]) {
     const { context, page, errors } = await open(file, colorScheme);
     await page.evaluate(axe);
     const { violations } = await page.evaluate(() => axe.run());
@@ -187,6 +189,12 @@ check("and who comes to the ground", events.includes("load on the ground") && ev
 assert.deepEqual(ground.errors, []);
 await ground.context.close();
 
+const route = await open("route.html", "light");
+const legs = route.page.getByRole("region", { name: "a-to-b leg by leg" }).locator("tbody tr");
+check("a route is shown leg by leg", (await legs.count()) === 2 && /^1 to 2/.test(await legs.nth(1).innerText()));
+check("with the speed that its limits allow", (await route.page.textContent("#plots")).includes("limits allow"));
+await route.context.close();
+
 const replayed = await open("replayed.html", "light");
 const said = await replayed.page.textContent("main");
 check("a replay says what its log lacks", said.includes("no f1 … f3"));
@@ -196,8 +204,11 @@ await replayed.context.close();
 // A board that is this program, and a page that sees it fly.
 const place = `unix:${join(out, "target")}`;
 const target = spawn(program, ["target", "--listen", place]);
+// Whatever fails: neither outlives the checks.
+process.on("exit", () => target.kill());
 await new Promise((listens) => target.stderr.once("data", listens));
 const flying = spawn(program, ["hil", "fig3a", "--connect", place, "--real-time", "--live=0", "--out", join(out, "live")]);
+process.on("exit", () => flying.kill());
 const address = await new Promise((found, failed) => {
   let heard = "";
   flying.stderr.on("data", (text) => { heard += text; const [match] = heard.match(/http:\S+(?=\n)/) ?? []; if (match) found(match); });
@@ -214,10 +225,12 @@ check("a flight is seen while it flies", flying.exitCode === null && early < 9.5
 await watching.waitForFunction(() => document.getElementById("live").textContent.includes("over"), null, { timeout: 30000 });
 check("to its end", Math.abs((await clock(watching)) - 10) < 0.05);
 await watching.evaluate(axe);
-check("live: axe-core finds nothing", (await watching.evaluate(() => axe.run())).violations.length === 0);
+for (const colorScheme of ["light", "dark"]) {
+  await watching.emulateMedia({ colorScheme });
+  check(`live in ${colorScheme}: axe-core finds nothing`, (await watching.evaluate(() => axe.run())).violations.length === 0);
+}
 assert.deepEqual(liveErrors, []);
 await live.close();
-target.kill();
 await browser.close();
 rmSync(out, { recursive: true });
 console.log(`${passed} passed, 0 failed`);

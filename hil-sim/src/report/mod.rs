@@ -1,6 +1,7 @@
 //! What is left of flights: a table, CSV files, figures, one HTML page, and a summary for programs.
 
 mod figures;
+mod legs;
 pub mod live;
 pub mod log;
 mod map;

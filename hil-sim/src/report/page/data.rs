@@ -4,8 +4,10 @@
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::{Map, Value, json};
 
-use crate::describe::scenario::Scenario;
+use crate::describe::path::RouteSpec;
+use crate::describe::scenario::{Law, Scenario};
 use crate::fly::flight::{End, LOST_M};
+use crate::report::legs::Legs;
 use crate::report::log::{Column, Table};
 
 /// A flight to be shown.
@@ -18,13 +20,15 @@ pub struct Shown<'a> {
     pub end: End,
     /// Where the ground is, m.
     pub ground_p3: Option<f64>,
+    /// Of a route's flight, its legs.
+    pub legs: Option<Legs>,
 }
 
 impl<'a> Shown<'a> {
     /// A flight of `scenario` over its own ground.
     pub fn of(scenario: &'a Scenario, table: &'a Table, end: End) -> Self {
         let ground_p3 = scenario.ground.map(|ground| ground.p3).or(scenario.ground_p3);
-        Self { scenario, table, end, ground_p3 }
+        Self { scenario, table, end, ground_p3, legs: None }
     }
 }
 
@@ -37,6 +41,9 @@ const FEWEST: usize = 300;
 
 /// Points of the curve to be flown.
 const OUTLINE: usize = 240;
+
+/// Waypoints of a route that are shown, at most: more could not be told apart.
+const MARKED: usize = 200;
 
 /// What the script does not look at.
 const UNSEEN: [&str; 7] = ["angles", "zeta", "nu", "integral", "kappa", "path_det", "implied_payload_mass"];
@@ -58,15 +65,25 @@ fn seen(table: &Table) -> impl Iterator<Item = &Column> {
 }
 
 fn one(flight: &Shown<'_>, rows: usize) -> Value {
-    let Shown { scenario, table, end, ground_p3 } = flight;
+    let Shown { scenario, table, end, ground_p3, legs } = flight;
     let every = table.t_s.len().div_ceil(rows).max(1);
     let last = table.t_s.len().saturating_sub(1);
     // The last sample is how a flight ended.
     let rows: Vec<usize> = (0..last).step_by(every).chain([last]).collect();
-    let columns: Map<String, Value> = seen(table)
+    let mut columns: Map<String, Value> = seen(table)
         .filter_map(|column| table.numbers(column.name).map(|numbers| (column.name, numbers)))
         .filter_map(|(name, numbers)| Some((name.to_owned(), packed(rows.iter().map(|&row| numbers[row]))?)))
         .collect();
+    if let Some(Legs { speeds, .. }) = legs {
+        for (name, which) in [("set_speed", 0), ("allowed_speed", 1)] {
+            let speeds = rows.iter().map(|&row| speeds.get(row).map_or(f32::NAN, |speeds| speeds[which] as f32));
+            columns.extend(packed(speeds).map(|packed| (name.to_owned(), packed)));
+        }
+    }
+    let waypoints: Vec<([f64; 3], bool)> = route(scenario)
+        .filter(|route| route.waypoints().len() <= MARKED)
+        .map(|route| route.waypoints().iter().map(|waypoint| (waypoint.point, waypoint.stop.is_some())).collect())
+        .unwrap_or_default();
     let outline: Vec<f32> =
         scenario.controller.law.outline(OUTLINE).into_iter().flatten().map(|part| part as f32).collect();
     let rotors = scenario.actuators.rotors;
@@ -82,6 +99,7 @@ fn one(flight: &Shown<'_>, rows: usize) -> Value {
         "grounds": changes(table, "ground"),
         "estimates": changes(table, "estimate"),
         "path": bytes(outline),
+        "waypoints": waypoints,
         "rod_length": scenario.vehicle.rod_length,
         "payload_mass": scenario.controller.vehicle.payload_mass,
         "hover_n": scenario.vehicle.total_mass() * scenario.vehicle.gravity,
@@ -90,6 +108,14 @@ fn one(flight: &Shown<'_>, rows: usize) -> Value {
         "ground": ground_p3,
         "wind": scenario.environment.air.map_or([0.0; 3], |air| air.wind),
     })
+}
+
+/// What is flown, if it is a route.
+fn route(scenario: &Scenario) -> Option<&RouteSpec> {
+    match &scenario.controller.law {
+        Law::Follow { path, .. } => path.route(),
+        Law::Track { .. } => None,
+    }
 }
 
 /// A column: one number if it does not change, and nothing if it is empty. A gap is filled with

@@ -8,6 +8,7 @@ use super::{figure, head};
 use crate::describe::reference::Reference;
 use crate::fly::batch::Outcome;
 use crate::report::Figure;
+use crate::report::legs::Legs;
 use crate::report::log::Table;
 use crate::report::table::{filled, name_and_end};
 
@@ -34,14 +35,22 @@ pub struct Page<'a> {
 pub fn page(page: &Page<'_>, reference: &Reference) -> String {
     let Page { heading, flights, figures, link } = page;
     let outcomes: Vec<&Outcome> = flights.iter().map(|(outcome, _)| *outcome).collect();
-    let shown: Vec<Shown<'_>> =
-        flights.iter().map(|(outcome, table)| Shown::of(&outcome.scenario, table, outcome.flight.end)).collect();
+    let shown: Vec<Shown<'_>> = flights
+        .iter()
+        .map(|(outcome, table)| Shown {
+            legs: Legs::of(outcome),
+            ..Shown::of(&outcome.scenario, table, outcome.flight.end)
+        })
+        .collect();
     let below = html! {
         @for outcome in &outcomes {
             @if let Some(replayed) = &outcome.flight.replayed {
                 h2 { (outcome.scenario.name) " beside its log" }
                 ul { @for sentence in replayed.sentences() { li { (sentence) } } }
             }
+        }
+        @for Shown { table, legs, .. } in &shown {
+            @if let Some(legs) = legs { (legs.table(&table.name)) }
         }
         h2 { "Measured, and what the reference says" }
         (table(&outcomes, reference))

@@ -4,7 +4,7 @@
 
 const PLOTS = [
   { title: "Distance from the curve d_C, m", log: true, lines: [["d_C", (f) => f.column("d_c")]] },
-  { title: "Speed, m/s", lines: [["load", norm("v")], ["UAV", norm("uav_v")]] },
+  { title: "Speed, m/s", lines: [["load", norm("v")], ["UAV", norm("uav_v")], ["set", "set_speed"], ["limits allow", "allowed_speed"]] },
   { title: "Thrust and tension, N", lines: [["thrust", "thrust"], ["tension", (f) => f.column("lambda").map((value) => -value * f.payload_mass), "lambda"], ["thrust logged", "logged_thrust"]] },
   { title: "Torque, N m", lines: [["τ1", "torque1"], ["τ2", "torque2"], ["τ3", "torque3"], ["τ1 logged", "logged_torque1"], ["τ2 logged", "logged_torque2"], ["τ3 logged", "logged_torque3"]] },
   { title: "Margins: the law is singular at 0", lines: [["q·e3", "q3"], ["q·b3", "q_b3"], ["cos²φ", "cos_phi_squared"], ["reach", "reach"]] },

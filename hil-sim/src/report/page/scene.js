@@ -139,6 +139,17 @@ class Scene {
     const path = this.flight.path, points = [];
     for (let k = 0; k < path.length; k += 3) points.push([path[k], path[k + 1], path[k + 2]]);
     this.line(points, theme("curve"), 1.5, [6, 5]);
+    // A route's waypoints by their numbers; those where it stops are filled.
+    this.flight.waypoints.forEach(([point, stops], number) => {
+      const [x, y, depth] = this.project(point);
+      if (depth < 0.1 * this.distance) return;
+      this.pen.beginPath();
+      this.pen.arc(x, y, 4, 0, 2 * Math.PI);
+      this.pen.strokeStyle = this.pen.fillStyle = theme("curve");
+      this.pen.lineWidth = 1.5;
+      if (stops) this.pen.fill(); else this.pen.stroke();
+      this.text(String(number), x + 6, y - 6, theme("muted"));
+    });
   }
 
   // What has been flown in the colours of d_C, what is to come pale.

@@ -37,7 +37,7 @@ pub fn replay(campaign: &Campaign, seed: Seed, control: Control<'_>) -> Result<O
             Verdict::NonFinite => End::NotFinite(row.end_s),
         };
         let heading = format!("Flight {} of the campaign, seed {}", seed.run, seed.batch);
-        let shown = Shown { scenario: &scenario, table: &log, end, ground_p3: campaign.ground_p3 };
+        let shown = Shown { scenario: &scenario, table: &log, end, ground_p3: campaign.ground_p3, legs: None };
         let page = flights_page(&heading, None, &[shown], &maud::html! {});
         Replay { row, log, page }
     }))

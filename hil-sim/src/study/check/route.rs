@@ -51,6 +51,8 @@ pub struct Legs {
     pub told: usize,
     /// The time for which hovering takes as much energy, s: power goes with T^1.5.
     pub hovering: f64,
+    /// At each node of the lap the speed that is set, m/s.
+    pub speeds: Vec<f64>,
     /// At each node of the lap how many times its speed could be flown within the limits, at most 4.
     pub factors: Vec<f64>,
 }
@@ -233,7 +235,8 @@ pub fn check<S: Table<f64>>(
     let demand = legs.iter().map(|leg| leg.demand).reduce(Demand::joined).expect("a route has a leg");
     let uavs = steadies.iter().map(|steady| steady.uav_position(vehicle)).collect();
     let lap = Lap::new(nodes, is_closed);
-    let legs = Some(Legs { legs, dwell, told, hovering, factors });
+    let speeds = steadies.iter().map(|steady| length(&steady.state.velocity)).collect();
+    let legs = Some(Legs { legs, dwell, told, hovering, speeds, factors });
     Ok(Report { lap, lap_time: time, regularity, branches: None, demand, excesses, fastest: None, legs, uavs })
 }
 
