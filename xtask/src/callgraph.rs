@@ -3,6 +3,7 @@
 //! whoever compiled them.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use anyhow::{Context, Result, bail, ensure};
 use object::{Object, ObjectSection, ObjectSymbol, SectionKind, SymbolKind};
@@ -90,6 +91,18 @@ impl CallGraph {
             }
         }
         seen
+    }
+
+    /// Where the functions are whose names contain `part`.
+    pub fn named(&self, part: &str) -> impl Iterator<Item = Range<u32>> {
+        let named = self.0.iter().filter(move |(_, function)| function.name.contains(part));
+        named.map(|(&entry, function)| entry..entry + function.size)
+    }
+
+    /// Where these functions are.
+    pub fn extents(&self, entries: &BTreeSet<u32>) -> impl Iterator<Item = Range<u32>> {
+        let functions = entries.iter().filter_map(|&entry| Some((entry, self.0.get(&entry)?)));
+        functions.map(|(entry, function)| entry..entry + function.size)
     }
 
     /// Code and literals of these functions, bytes.

@@ -1,7 +1,8 @@
 //! Running an image in QEMU, and what it prints.
 
 use std::collections::HashMap;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
+use std::ops::Range;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -48,15 +49,54 @@ pub fn bench(machine: &str, image: &Path) -> Result<Output> {
     parse(&text).with_context(|| format!("{machine} printed:\n{text}"))
 }
 
+/// Runs the bench on a few states only, and hands over the address of every instruction in `shown`
+/// that it comes by.
+pub fn trace(machine: &str, image: &Path, shown: &[Range<u32>], mut pass: impl FnMut(u32)) -> Result<()> {
+    let shown: Vec<String> = shown.iter().map(|at| format!("{:#x}..{:#x}", at.start, at.end - 1)).collect();
+    let mut child = qemu(machine, image)
+        .args(["-semihosting-config", "enable=on,target=native,arg=few", "-icount", "shift=7"])
+        .args(one_by_one()?)
+        .args(["-d", "exec,nochain", "-dfilter", &shown.join(",")])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .context("cannot start qemu-system-arm (package qemu-system-arm)")?;
+    let pipe = child.stderr.take().context("the pipe was just asked for")?;
+    for line in BufReader::new(pipe).lines() {
+        // Trace 0: 0x7f0c48000100 [00000000/00000400/00000110/ff000201] symbol
+        let line = line?;
+        let address = line.strip_prefix("Trace ").and_then(|line| line.split('/').nth(1));
+        if let Some(address) = address {
+            pass(u32::from_str_radix(address, 16)?);
+        }
+    }
+    let status = child.wait()?;
+    ensure!(status.success(), "{machine} ended with {status} while it was traced");
+    Ok(())
+}
+
+/// What makes QEMU translate each instruction by itself: another word from version 9 on.
+fn one_by_one() -> Result<&'static [&'static str]> {
+    let output = Command::new("qemu-system-arm").arg("--version").output().context("cannot start qemu-system-arm")?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    let version = text.split_whitespace().find_map(|word| word.split('.').next()?.parse::<u32>().ok());
+    let version = version.with_context(|| format!("qemu-system-arm --version printed {text}"))?;
+    Ok(if version < 9 { &["-singlestep"] } else { &["-accel", "tcg,one-insn-per-tb=on"] })
+}
+
+/// The emulator with `image` on `machine`, without a screen and ports.
+fn qemu(machine: &str, image: &Path) -> Command {
+    let mut qemu = Command::new("qemu-system-arm");
+    qemu.args(["-machine", machine, "-display", "none", "-serial", "none", "-monitor", "none"]);
+    qemu.arg("-kernel").arg(image).stdin(Stdio::null());
+    qemu
+}
+
 /// Runs `image` to its end, which has to be a success, and returns its standard output.
 fn run(machine: &str, image: &Path, arguments: &[&str]) -> Result<String> {
-    let mut child = Command::new("qemu-system-arm")
-        .args(["-machine", machine, "-display", "none", "-serial", "none", "-monitor", "none"])
+    let mut child = qemu(machine, image)
         .args(["-semihosting-config", "enable=on,target=native"])
         .args(arguments)
-        .arg("-kernel")
-        .arg(image)
-        .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .spawn()
         .context("cannot start qemu-system-arm (package qemu-system-arm)")?;

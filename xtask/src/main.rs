@@ -3,6 +3,7 @@
 use clap::{Parser, Subcommand};
 
 mod callgraph;
+mod cycles;
 mod dist;
 mod emulator;
 mod image;
@@ -24,8 +25,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measures the control step on the emulated Cortex-M4F and M7, and proves that host and target
-    /// agree bit for bit.
+    /// Measures the control step on the emulated Cortex-M4F and M7 in instructions, and in cycles by
+    /// published timings, and proves that host and target agree bit for bit.
     #[command(after_help = "Fails if a number exceeds firmware/bench/expected.json or a proof does not hold.\n\n\
         Examples:\n  cargo xtask target\n  cargo xtask target --json\n  cargo xtask target --refresh")]
     Target {

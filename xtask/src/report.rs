@@ -7,6 +7,7 @@ use anyhow::{Result, ensure};
 use comfy_table::{CellAlignment, Table, presets::UTF8_FULL_CONDENSED};
 use serde::{Deserialize, Serialize};
 
+use crate::cycles::Cycles;
 use crate::image::Image;
 
 /// Instructions of the fastest and the slowest step, and in the mean, rounded up.
@@ -26,6 +27,8 @@ pub struct Case {
     pub name: String,
     /// On the first core; the others run the same code.
     pub instructions: Extremes,
+    /// By the model, of the slowest step that was traced.
+    pub cycles: Cycles,
     /// Everything that its step can reach, bytes.
     pub code_bytes: u32,
     /// Stack touched, bytes.
@@ -44,6 +47,8 @@ pub struct Case {
 pub struct Report {
     /// By case.
     pub instructions: BTreeMap<String, Extremes>,
+    /// By the model, of the slowest step that was traced, by case.
+    pub cycles: BTreeMap<String, Cycles>,
     /// Code of a step on the paper's circle with everything it can call, bytes.
     pub code_bytes: u32,
     /// The same by case.
@@ -86,6 +91,12 @@ impl Report {
             compare(&format!("{name}, most instructions"), extremes.worst, before.map(|before| before.worst));
             compare(&format!("{name}, instructions in the mean"), extremes.mean, before.map(|before| before.mean));
         }
+        for (name, cycles) in &self.cycles {
+            let before = expected.cycles.get(name);
+            compare(&format!("{name}, cycles"), cycles.zero_wait, before.map(|before| before.zero_wait));
+            compare(&format!("{name}, cycles from flash"), cycles.flash, before.map(|before| before.flash));
+            compare(&format!("{name}, divisions and roots"), cycles.divisions, before.map(|before| before.divisions));
+        }
         for (name, &bytes) in &self.code_bytes_by_case {
             let before = expected.code_bytes_by_case.get(name);
             compare(&format!("{name}, bytes of code"), bytes.into(), before.map(|&before| before.into()));
@@ -114,10 +125,9 @@ pub fn table(image: &Image, cases: &[Case], report: &Report) -> String {
     let mut table = Table::new();
     table.load_style(UTF8_FULL_CONDENSED);
     let cores = cases.first().map_or(&[][..], |case| &case.identical);
-    let mut header: Vec<String> =
-        ["case", "instructions, best", "worst", "mean", "code, B", "stack, B", "bound, B", "state, B"]
-            .map(str::to_owned)
-            .to_vec();
+    let columns = ["case", "instructions, best", "worst", "mean", "cycles", "from flash", "÷ and √", "code, B"];
+    let columns = columns.into_iter().chain(["stack, B", "bound, B", "state, B"]);
+    let mut header: Vec<String> = columns.map(str::to_owned).collect();
     header.extend(cores.iter().map(|(core, _)| format!("{core} = host")));
     let columns = header.len();
     table.set_header(header);
@@ -128,6 +138,9 @@ pub fn table(image: &Image, cases: &[Case], report: &Report) -> String {
             best.to_string(),
             worst.to_string(),
             mean.to_string(),
+            case.cycles.zero_wait.to_string(),
+            case.cycles.flash.to_string(),
+            case.cycles.divisions.to_string(),
             case.code_bytes.to_string(),
             case.stack_painted.to_string(),
             case.stack_bound.to_string(),
@@ -163,6 +176,7 @@ mod tests {
     fn report(worst: u64) -> Report {
         Report {
             instructions: BTreeMap::from([("circle".to_owned(), Extremes { best: 10, worst, mean: 10 })]),
+            cycles: BTreeMap::from([("circle".to_owned(), Cycles { zero_wait: 20, flash: 50, divisions: 1 })]),
             code_bytes: 1000,
             code_bytes_by_case: BTreeMap::from([("circle".to_owned(), 1000)]),
             ram_bytes: 100,

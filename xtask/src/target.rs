@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result, ensure};
 use cases::{Case, Visitor};
 
+use crate::cycles;
 use crate::emulator::{self, MACHINES, Output};
 use crate::image::Image;
 use crate::report::{Case as Row, Extremes, Report};
@@ -52,7 +53,7 @@ struct Host(BTreeMap<String, u64>);
 impl Visitor for Host {
     fn visit<C: Case>(&mut self, name: &str, case: Option<C>) {
         if let Some(mut case) = case {
-            self.0.insert(name.to_owned(), cases::exercise(&mut case, C::step).value());
+            self.0.insert(name.to_owned(), cases::exercise(&mut case, cases::STATES, C::step).value());
         }
     }
 }
@@ -61,7 +62,9 @@ impl Visitor for Host {
 fn rows(image: &Image, outputs: &[(&str, Output)]) -> Result<Vec<Row>> {
     let mut host = Host::default();
     cases::visit_all(&mut host);
+    let [(_, machine), ..] = MACHINES;
     let (_, first) = outputs.first().context("there is a machine")?;
+    let cycles = cycles::measure(machine, image, &first.cases)?;
     let row = |(name, measured): &(String, emulator::Measured)| {
         let stack_bound = image.calls.stack(measured.entry)?;
         ensure!(
@@ -76,6 +79,7 @@ fn rows(image: &Image, outputs: &[(&str, Output)]) -> Result<Vec<Row>> {
         Ok(Row {
             name: name.clone(),
             instructions: Extremes { best: measured.best, worst: measured.worst, mean: measured.mean },
+            cycles: cycles.get(name).copied().unwrap_or_default(),
             code_bytes: image.calls.code_bytes(&image.calls.reachable(measured.entry)),
             stack_painted: measured.stack,
             stack_bound,
@@ -92,6 +96,7 @@ fn summary(image: &Image, rows: &[Row], outputs: &[(&str, Output)]) -> Report {
     let code: BTreeMap<String, u32> = rows.iter().map(|row| (row.name.clone(), row.code_bytes)).collect();
     Report {
         instructions: rows.iter().map(|row| (row.name.clone(), row.instructions)).collect(),
+        cycles: rows.iter().map(|row| (row.name.clone(), row.cycles)).collect(),
         code_bytes: code.get(PLAIN).copied().unwrap_or(0),
         code_bytes_by_case: code,
         ram_bytes_by_case: rows.iter().map(|row| (row.name.clone(), row.ram_bytes)).collect(),

@@ -27,6 +27,7 @@ struct Extremes {
 struct Bench {
     probe: Probe,
     console: Console,
+    states: usize,
 }
 
 impl Visitor for Bench {
@@ -37,7 +38,7 @@ impl Visitor for Bench {
             return;
         };
         let mut extremes = Extremes { best: u32::MAX, worst: 0, stack: 0, total: 0, steps: 0 };
-        let digest = cases::exercise(&mut case, |case, state| {
+        let digest = cases::exercise(&mut case, self.states, |case, state| {
             let (output, cost) = self.probe.measure(step::<C>, case, state);
             extremes.best = extremes.best.min(cost.instructions);
             extremes.worst = extremes.worst.max(cost.instructions);
@@ -72,7 +73,9 @@ extern "C" fn step<C: Case>(case: &mut C, state: &C::State) -> C::Output {
 fn main() -> ! {
     let status = match (Console::open(), Probe::start()) {
         (Some(console), Some(probe)) => {
-            let mut bench = Bench { probe, console };
+            // Where the emulator logs every instruction, all states would take too long.
+            let states = if console::is_command_line(b"few") { cases::FEW } else { cases::STATES };
+            let mut bench = Bench { probe, console, states };
             cases::visit_all(&mut bench);
             bench.console.number("roots", cases::roots().value());
             bench.console.end();

@@ -20,6 +20,10 @@ pub use random::Random;
 
 /// States a case is run on.
 pub const STATES: usize = 1024;
+/// The first of them, for who can't wait for all.
+pub const FEW: usize = 32;
+/// Steps on each state: the first as after engaging, the second with a last command to predict from.
+pub const STEPS: usize = 2;
 
 /// A law on a path or reference, and the states it is tried on.
 pub trait Case {
@@ -59,14 +63,18 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("load-filter-and-navigation", LoadAndNavigation::new());
 }
 
-/// Runs `case` on [`STATES`] random states through `step`, two steps each: the first as after
-/// engaging, the second with a last command to predict from. Returns the digest of all commands.
-pub fn exercise<C: Case>(case: &mut C, mut step: impl FnMut(&mut C, &C::State) -> C::Output) -> Digest {
+/// Runs `case` on so many random states through `step`, [`STEPS`] each. Returns the digest of all
+/// commands.
+pub fn exercise<C: Case>(
+    case: &mut C,
+    states: usize,
+    mut step: impl FnMut(&mut C, &C::State) -> C::Output,
+) -> Digest {
     let mut random = Random::new(20);
     let mut digest = Digest::default();
-    for _ in 0..STATES {
+    for _ in 0..states {
         let state = case.prepare(&mut random);
-        for _ in 0..2 {
+        for _ in 0..STEPS {
             let output = step(case, &state);
             case.digest(&output, &mut digest);
         }
