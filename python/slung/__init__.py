@@ -22,6 +22,7 @@ from ._slung import (
     Uav,
     World,
     compare,
+    replay,
     run,
 )
 from .formula import path_of
@@ -44,5 +45,6 @@ __all__ = [
     "World",
     "compare",
     "path_of",
+    "replay",
     "run",
 ]

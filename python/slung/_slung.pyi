@@ -344,6 +344,21 @@ class Flight:
     @property
     def times_real_time(self) -> float:
         """Time flown over the CPU time that it took."""
+    @property
+    def said(self) -> list[str]:
+        """Of a replay: how it compares with its log, and what the log lacks, in sentences; else none."""
+
+def replay(
+    log: str | PathLike[str],
+    scenario: Scenario,
+    *,
+    from_s: float | None = None,
+    to_s: float | None = None,
+    full_thrust: float | None = None,
+) -> Flight:
+    """Puts a flown log (CSV or ULog; the simulator's, or PX4's) through a scenario's estimator and law again: what would they have said?
+    The loop is open: the UAV moves as the log has it. The answer's log has `thrust`, `torque1` ... of the law beside `logged_thrust`, `logged_torque1` ....
+    `full_thrust`, N, is what all rotors give together, for logs that have thrust as a share of it."""
 
 def run(scenario: Scenario, *, arithmetic: _Arithmetic = "f32") -> Flight:
     """Flies a scenario, its controller in the loop with its world."""

@@ -4,13 +4,15 @@ use hil_sim::fly::batch::Outcome;
 use hil_sim::fly::flight::End;
 use hil_sim::fly::run::{Arithmetic, fly};
 use hil_sim::report::log::{Record, Table, Values};
+use hil_sim::study::replay::{Part, ReplayError, Replayed, replay as replayed};
 use numpy::PyArray1;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::path::PathBuf;
 
 use crate::convert::object;
-use crate::error::{unknown, whole};
+use crate::error::{invalid, unknown, whole, within};
 use crate::interrupt::interruptible;
 use crate::scenario::Scenario;
 
@@ -33,15 +35,35 @@ pub fn run(py: Python<'_>, scenario: &Scenario, arithmetic: &str) -> PyResult<Fl
     let scenario = scenario.flown.clone();
     let flown = interruptible(py, move |control| {
         let flight = fly(&scenario, arithmetic, false, control).map_err(whole)?;
-        let outcome = Outcome { scenario, flight };
-        let records = Record::of_flight(&outcome);
-        let log = Table::new(&outcome.scenario.name, &outcome.scenario.title, &records);
-        Ok(Flight { outcome, log })
+        Ok(Flight::of(Outcome { scenario, flight }))
     })?;
     match flown {
         Ok(flight) if flight.outcome.flight.end == End::Interrupted => Err(PyKeyboardInterrupt::new_err(())),
         flown => flown,
     }
+}
+
+/// Puts a flown log, CSV or ULog, through a scenario's estimator and law again.
+#[pyfunction]
+#[pyo3(signature = (log, scenario, *, from_s = None, to_s = None, full_thrust = None))]
+pub fn replay(
+    py: Python<'_>,
+    log: PathBuf,
+    scenario: &Scenario,
+    from_s: Option<f64>,
+    to_s: Option<f64>,
+    full_thrust: Option<f64>,
+) -> PyResult<Flight> {
+    if let Some(full_thrust) = full_thrust {
+        within("full_thrust", full_thrust, [1e-3, 1e6])?;
+    }
+    let bytes = std::fs::read(log)?;
+    let (scenario, part) = (scenario.flown.clone(), Part { from_s, to_s, full_thrust });
+    let outcome = py.detach(|| replayed(scenario, &bytes, &part)).map_err(|error| match error {
+        ReplayError::Scenario(error) => invalid(error),
+        error => whole(error),
+    })?;
+    Ok(Flight::of(outcome))
 }
 
 /// A log's columns by name.
@@ -60,8 +82,22 @@ pub fn log<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> 
     Ok(log)
 }
 
+impl Flight {
+    fn of(outcome: Outcome) -> Self {
+        let records = Record::of_flight(&outcome);
+        let log = Table::new(&outcome.scenario.name, &outcome.scenario.title, &records);
+        Self { outcome, log }
+    }
+}
+
 #[pymethods]
 impl Flight {
+    /// Of a replay: how it compares with its log, and what the log lacks, in sentences; else none.
+    #[getter]
+    fn said(&self) -> Vec<String> {
+        self.outcome.flight.replayed.as_ref().map(Replayed::sentences).unwrap_or_default()
+    }
+
     /// What was measured, by name; what does not apply is not there.
     #[getter]
     fn results<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

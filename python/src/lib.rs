@@ -29,7 +29,7 @@ mod _slung {
     #[pymodule_export]
     use crate::fleet::Fleet;
     #[pymodule_export]
-    use crate::flight::{Flight, run};
+    use crate::flight::{Flight, replay, run};
     #[pymodule_export]
     use crate::parameters::{Entry, Parameters};
     #[pymodule_export]
