@@ -5,7 +5,7 @@ use estimator::{
     Cable, Fix, Imu, LoadMeasurement, Matrix3, Motion, Navigation, NavigationParams, Payload, PayloadParams, Refused,
     Validity, Vector3,
 };
-use model::VehicleParams;
+use model::{Uav, VehicleParams};
 
 const PERIOD: f32 = 0.002;
 const G: f32 = 9.81;
@@ -208,4 +208,26 @@ fn navigation_says_why_it_refuses_and_starts_anew_from_a_receiver_that_insists()
     assert_eq!(filter.health().resets, 1);
     let motion = filter.step(Some(&rest));
     assert!((motion.position.x - 30.0).abs() < 0.1, "{}", motion.position);
+}
+
+/// After a jump of navigation the line from the UAV to the load stays the cable: the UAV that a law
+/// is told beside the state glides along.
+#[test]
+fn the_uav_glides_beside_its_load() {
+    let params = PayloadParams::of(&VehicleParams::<f64>::paper(), 0.002);
+    let (length, gravity) = (params.cable_length, params.gravity);
+    let hover = (params.uav_mass + params.payload_mass) * gravity;
+    let mut filter = Payload::new(params).unwrap();
+    let mut motion = Motion::at_rest(Vector3::zeros(), gravity);
+    for step in 0..600 {
+        if step == 500 {
+            motion.position.x += 1.5;
+        }
+        let estimate = filter.step(Some(&motion), Some(hover));
+        let Motion { position, velocity, attitude, body_rate, .. } = motion;
+        let uav = estimate.beside(&Uav { position, velocity, attitude, body_rate });
+        let line = estimate.state.position - uav.position;
+        assert!((line - estimate.state.rod * length).amax() < 1e-12, "{line}");
+        assert!(step != 500 || uav.position.x < 0.01, "{}", uav.position);
+    }
 }

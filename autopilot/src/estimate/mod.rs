@@ -112,7 +112,7 @@ impl Estimator {
             validity => Some(Unseen::Rod(validity)),
         };
         let specific_force = motion.map_or_else(Vector3::zeros, |motion| motion.specific_force);
-        Ok(Found { state: estimate.state, uav, specific_force, unseen })
+        Ok(Found { state: estimate.state, uav: estimate.beside(&uav), specific_force, unseen })
     }
 }
 

@@ -24,7 +24,7 @@ pub use load::LoadMeasurement;
 pub use params::{PayloadNoise, PayloadParams};
 pub use state::PayloadState;
 
-use model::{Matrix3, OutOfRange, Real, State, Vector3};
+use model::{Matrix3, OutOfRange, Real, State, Uav, Vector3};
 
 use crate::covariance::{Scalar, dot};
 use crate::lever::{axes, swing};
@@ -64,12 +64,25 @@ pub struct Estimate<T> {
     /// for the rod. Where navigation jumps by 5 cm to 2 m, or 5 cm/s to 2 m/s, it glides to the new
     /// place within some seconds; beyond, it jumps along.
     pub state: State<T>,
+    /// What navigation's last jump has left in `state`'s position, m, and velocity, m/s.
+    pub rest: [Vector3<T>; 2],
     /// The cable's pull m_L s by the pendulum, N.
     pub tension: T,
     /// Whether the cable carries.
     pub cable: Cable,
     /// What it is worth.
     pub health: Health<T>,
+}
+
+impl<T: Real> Estimate<T> {
+    /// The UAV by navigation where it glides along with `state`: as a law is told it beside that. Of
+    /// a jump that the one has taken and the other has not, a supervisor would say that load and UAV
+    /// contradict each other.
+    #[must_use]
+    pub fn beside(&self, uav: &Uav<T>) -> Uav<T> {
+        let [position, velocity] = self.rest;
+        Uav { position: uav.position + position, velocity: uav.velocity + velocity, ..*uav }
+    }
 }
 
 /// The filter.
@@ -465,7 +478,8 @@ impl<T: Real> Payload<T> {
         if self.missing > BLIND {
             health.validity = Validity::Blind;
         }
-        Estimate { state, tension: mass * self.pull.tension, cable: self.watch.cable, health }
+        let rest = [self.glide.rest, self.glide.rate];
+        Estimate { state, rest, tension: mass * self.pull.tension, cable: self.watch.cable, health }
     }
 
     /// What the filter is worth, once a cycle.

@@ -186,7 +186,7 @@ impl Sight {
             comes: true,
             state: estimate.state.cast(),
             sees_load: !apart || estimate.cable == Cable::Taut,
-            uav: apart.then(|| uav.cast()),
+            uav: apart.then(|| estimate.beside(&uav).cast()),
             specific_force: apart.then(|| specific_force.map(f64::from)),
         }
     }
