@@ -104,14 +104,17 @@ impl<T: Real> Parameters<T> {
     /// Names the parameter, of those whose names begin with one of `prefixes`, whose value the
     /// controller refused.
     pub(crate) fn naming(&self, prefixes: &'static [&'static str]) -> impl Fn(OutOfRange<T>) -> OutOfRange<T> + '_ {
-        move |error| {
-            let mut entries = f32::table().iter().zip(self.0);
-            let refused = entries.find(|(entry, value)| {
-                prefixes.iter().any(|prefix| entry.name.as_str().starts_with(prefix))
-                    && entry.field == error.field
-                    && *value == error.value
-            });
-            OutOfRange { field: refused.map_or(error.field, |(entry, _)| entry.name.as_str()), ..error }
-        }
+        move |error| OutOfRange { field: self.name_of(&error, prefixes), ..error }
+    }
+
+    // Kept apart: set-up asks in many places, and none of them is in a hurry.
+    #[inline(never)]
+    fn name_of(&self, refused: &OutOfRange<T>, prefixes: &[&str]) -> &'static str {
+        let named = f32::table().iter().zip(self.0).find(|(entry, value)| {
+            prefixes.iter().any(|prefix| entry.name.as_str().starts_with(prefix))
+                && entry.field == refused.field
+                && *value == refused.value
+        });
+        named.map_or(refused.field, |(entry, _)| entry.name.as_str())
     }
 }

@@ -173,8 +173,10 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
     /// Wishes for another factor of the path's speed, which changes smoothly: 1 flies the prescribed
     /// speed, 0 stops, less goes back. The tracking law has none.
     pub fn set_speed_factor(&mut self, factor: T) {
-        if let Law::Follow(supervisor) = &mut self.law {
-            supervisor.law_mut().set_speed_factor(factor);
+        match &mut self.law {
+            Law::Follow(supervisor) => supervisor.law_mut().set_speed_factor(factor),
+            #[cfg(feature = "tracking")]
+            Law::Track(..) => {}
         }
     }
 
