@@ -97,10 +97,11 @@ pub fn campaign(common: &Common, arguments: &CampaignArguments) -> Ended {
     let text = match arguments.file.as_deref().map(std::fs::read_to_string) {
         None => built_in().ok_or("no campaign is built in")?,
         Some(Ok(text)) => text,
-        Some(Err(error)) => match built_in().filter(|_| error.kind() == io::ErrorKind::NotFound) {
-            Some(text) => text,
-            None => return Err(format!("{name}: {error}").into()),
-        },
+        Some(Err(error)) if error.kind() == io::ErrorKind::NotFound => {
+            let names = campaign::BUILTIN.iter().map(|(name, _)| *name);
+            built_in().ok_or_else(|| super::load::absent(file, "campaign", names))?
+        }
+        Some(Err(error)) => return Err(format!("{name}: {error}").into()),
     };
     let campaign = Campaign::parse(&text).map_err(|invalid| format!("{name}: {invalid}"))?;
     let runs = arguments.runs.unwrap_or(campaign.runs);

@@ -28,11 +28,16 @@ pub fn all(files: &[PathBuf]) -> Result<Vec<Scenario>, Box<dyn Error>> {
 pub fn one(file: &Path) -> Result<Scenario, Box<dyn Error>> {
     match std::fs::read_to_string(file) {
         Ok(text) => Ok(Scenario::parse(&file.to_string_lossy(), &text)?),
-        Err(error) => {
-            match file.to_str().filter(|_| error.kind() == io::ErrorKind::NotFound).and_then(scenario::builtin) {
-                Some(scenario) => Ok(scenario?),
-                None => Err(format!("{}: {error}", file.display()).into()),
-            }
-        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => match file.to_str().and_then(scenario::builtin) {
+            Some(scenario) => Ok(scenario?),
+            None => Err(absent(file, "scenario", scenario::builtin_names())),
+        },
+        Err(error) => Err(format!("{}: {error}", file.display()).into()),
     }
+}
+
+/// That there is no such file, and no built-in `kind` of this name, but others.
+pub fn absent<'a>(file: &Path, kind: &str, known: impl Iterator<Item = &'a str>) -> Box<dyn Error> {
+    let known: Vec<&str> = known.collect();
+    format!("{}: there is no such file, and the built-in {kind}s are {}", file.display(), known.join(", ")).into()
 }

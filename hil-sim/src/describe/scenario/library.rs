@@ -55,8 +55,17 @@ pub const ROUTES: &[(&str, &str)] = scenarios!["figure-eight", "survey-rows", "h
 /// # Errors
 /// [`ScenarioError`] as for any file.
 pub fn builtin(name: &str) -> Option<Result<Scenario, ScenarioError>> {
-    let (name, text) = FIGURES.iter().chain(CURVES).chain(ROUTES).find(|(known, _)| *known == name)?;
+    let (name, text) = all().find(|(known, _)| *known == name)?;
     Some(Scenario::parse(&format!("hil-sim/scenarios/{name}.toml"), text))
+}
+
+/// The names of all.
+pub fn builtin_names() -> impl Iterator<Item = &'static str> {
+    all().map(|(name, _)| *name)
+}
+
+fn all() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
+    FIGURES.iter().chain(CURVES).chain(ROUTES)
 }
 
 #[cfg(test)]
@@ -65,7 +74,7 @@ mod tests {
 
     #[test]
     fn every_built_in_scenario_is_valid() {
-        for (name, _) in FIGURES.iter().chain(CURVES).chain(ROUTES) {
+        for name in builtin_names() {
             let scenario = builtin(name).expect("it is in the list").unwrap_or_else(|error| panic!("{error}"));
             assert_eq!(scenario.name, *name);
         }

@@ -100,14 +100,16 @@ pub struct Campaign {
 /// Paths remembered.
 const WALKED: usize = 64;
 
+/// The built-in campaigns: name and text.
+pub const BUILTIN: &[(&str, &str)] = &[
+    ("campaign", include_str!("../../../scenarios/campaign.toml")),
+    ("ground-to-ground", include_str!("../../../scenarios/ground-to-ground.toml")),
+];
+
 /// The text of the built-in campaign of this name, if there is one.
 #[must_use]
 pub fn builtin(name: &str) -> Option<&'static str> {
-    match name {
-        "campaign" => Some(include_str!("../../../scenarios/campaign.toml")),
-        "ground-to-ground" => Some(include_str!("../../../scenarios/ground-to-ground.toml")),
-        _ => None,
-    }
+    BUILTIN.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
 }
 
 /// One flight of a campaign.

@@ -21,7 +21,7 @@ mod summary;
 mod tally;
 
 pub use draw::Distribution;
-pub use file::{ApproachFields, Campaign, Drawn, builtin};
+pub use file::{ApproachFields, BUILTIN, Campaign, Drawn, builtin};
 pub use fly::{Row, Verdict, fly_run, pilot};
 pub use hunt::{Find, Hunt, HuntError, hunt};
 pub use page::write as write_page;
