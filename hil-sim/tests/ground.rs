@@ -339,23 +339,6 @@ fn a_load_on_a_long_rope_is_set_down_in_its_place_in_gusts() {
     }
 }
 
-/// A path is joined a metre above the ground, from hold, whose thrust is noisy: taken over as it just
-/// was, it had the load sink to the ground.
-#[test]
-fn a_path_is_joined_without_touching_the_ground_below() {
-    let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
-    let mut lowest = f64::INFINITY;
-    let row = fly_run(&campaign, Seed { batch: 2, run: 893 }, Control::alone(), &mut |moment| {
-        if moment.decision.is_some_and(|decision| decision.mode == Mode::Join) {
-            lowest = lowest.min(-moment.state.position.z);
-        }
-    });
-    let row = row.unwrap().expect("nobody interrupts it");
-    println!("no lower than {lowest} m, {row:?}");
-    assert!(lowest > 0.5 && row.falls == 0, "{lowest} m, {row:?}");
-    assert!(row.load_touchdown_m_s.is_some_and(|speed| speed < SOFT), "{row:?}");
-}
-
 /// A few missions of the built-in campaign: any vehicle, rope, wind and wrong number.
 #[test]
 fn the_campaign_from_ground_to_ground_lands_in_its_place() {

@@ -122,7 +122,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let pace = approach.pace(&vehicle)?;
         policy.check()?;
         Ok(Self {
-            hold: Hold::from(&vehicle, &Uav::of(sampler.state(), &vehicle), &sampler.swing(), vehicle.hover_thrust()),
+            hold: Hold::from(&vehicle, &Uav::of(sampler.state(), &vehicle), &sampler.swing()),
             sampler,
             law,
             envelope: Envelope::new(&vehicle, &envelope)?,
@@ -523,7 +523,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
         match self.law.join(state, &self.pace) {
             Ok(()) => {
-                self.sampler.carry_on(state, self.hold.thrust());
+                self.sampler.carry_on(state);
                 self.mode = Mode::Join;
             }
             Err(Refused::Searching) => {}
@@ -548,8 +548,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     #[inline(never)]
     fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
-        let thrust = self.sampler.applied().thrust;
-        self.hold = Hold::from(self.sampler.vehicle(), uav, &self.sampler.swing(), thrust);
+        self.hold = Hold::from(self.sampler.vehicle(), uav, &self.sampler.swing());
         self.sampler.soften();
         self.mode = Mode::Hold;
         self.calm = T::zero();
@@ -620,11 +619,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 && is_within(&state.rod_rate, T::lit(CALM_SWING * CALM_SWING))
                 && state.attitude.m33 > T::lit(CALM_TILT)
         });
-        // While the cable is slack nothing is learned of what the law has to know, so that the time
-        // begins when it pulls.
-        let is_slack = self.cable.is_slack();
-        self.calm = if is_calm && !is_slack { self.calm + period } else { T::zero() };
-        if self.request == Request::Follow && is_calm && is_slack {
+        self.calm = if is_calm { self.calm + period } else { T::zero() };
+        if self.request == Request::Follow && self.calm >= self.policy.calm && self.cable.is_slack() {
             // Nothing else keeps it from the path.
             self.fault = self.fault.or(Some(Fault::Slack));
         }

@@ -38,8 +38,6 @@ const LONG: f64 = 1.0;
 /// cable: the wind a third of the load's weight.
 const LEANING: f64 = 2.0;
 const LEAN: f64 = 0.3;
-/// Time, s, over which the thrust is averaged that a law continues.
-const STEADIED: f64 = 0.3;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
 /// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
@@ -94,15 +92,12 @@ pub(crate) struct Hold<T> {
     lean: Vector3<T>,
     /// The yaw rate that is wanted, rad/s.
     yaw_rate: T,
-    /// The mean of the thrust, N.
-    thrust: T,
 }
 
 impl<T: Real> Hold<T> {
-    /// For `vehicle` under `thrust` (N), from where the UAV is and as fast as it is, with what is known
-    /// of the `swing`.
+    /// For `vehicle`, from where the UAV is and as fast as it is, with what is known of the `swing`.
     #[inline(never)]
-    pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>, swing: &Swing<T>, thrust: T) -> Self {
+    pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>, swing: &Swing<T>) -> Self {
         let params = vehicle.params();
         let per_length = params.gravity / params.rod_length;
         let omega = per_length.sqrt();
@@ -127,13 +122,7 @@ impl<T: Real> Hold<T> {
             integral: Vector3::zeros(),
             lean,
             yaw_rate: T::zero(),
-            thrust,
         }
-    }
-
-    /// The thrust, N, without the noise of what is measured.
-    pub(crate) fn thrust(&self) -> T {
-        self.thrust
     }
 
     /// The UAV's own target, and how fast it moves, from now on.
@@ -223,9 +212,10 @@ impl<T: Real> Hold<T> {
             T::lit(YAW_RATE_GAIN) * (self.yaw_rate - omega.z),
         );
         let inertia = vehicle.inertia();
-        let thrust = body.z.max(T::zero());
-        self.thrust += (thrust - self.thrust) * (period / T::lit(STEADIED)).min(T::one());
-        Command { thrust, torque: inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)) }
+        Command {
+            thrust: body.z.max(T::zero()),
+            torque: inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)),
+        }
     }
 
     /// The target one `period` on; its velocity is on its way to `wanted`.

@@ -216,7 +216,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// The same on a good state, with what the actuators apply.
     pub(crate) fn stand(&mut self, state: &State<T>, applied: Command<T>) {
         self.reset(state, applied);
-        self.carry_on(state, self.memory.actuators.arriving().thrust);
+        self.carry_on(state);
     }
 
     /// `applied` has been applied for long, wherever the vehicle is.
@@ -224,10 +224,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.actuators.reset(applied);
     }
 
-    /// Continues `thrust`, N, which is being applied but for noise, with the ζ that does. The first
-    /// command's step against what is fades.
+    /// Continues what is being applied, with the ζ that does. The first command's step against it
+    /// fades.
     #[inline(never)]
-    pub(crate) fn carry_on(&mut self, state: &State<T>, thrust: T) {
+    pub(crate) fn carry_on(&mut self, state: &State<T>) {
+        let thrust = self.memory.actuators.arriving().thrust;
         self.memory.zeta = continuing(&self.memory.weighed, state, thrust, self.memory.observer.estimate());
         self.memory.u_zeta = T::zero();
         self.soften();
