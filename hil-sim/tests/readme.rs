@@ -36,10 +36,16 @@ fn its_costs_are_the_expected_ones() {
         serde_json::from_str(include_str!("../../firmware/bench/expected.json")).expect("JSON");
     let grouped = |number: &serde_json::Value| {
         let number = number.as_u64().expect("a count");
-        if number < 1000 { number.to_string() } else { format!("{},{:03}", number / 1000, number % 1000) }
+        let (thousands, rest) = (number / 1000, number % 1000);
+        if thousands == 0 { rest.to_string() } else { format!("{thousands},{rest:03}") }
     };
     let count = |case: &str, end: &str| grouped(&expected["instructions"][case][end]);
-    let bytes = |case: &str| grouped(&expected["code_bytes_by_case"][case]);
+    // What stands behind the instructions: cycles, from flash, code.
+    let rest = |case: &str| {
+        let cycles = |memory: &str| grouped(&expected["cycles"][case][memory]);
+        let code = grouped(&expected["code_bytes_by_case"][case]);
+        format!("{} | {} | {code} B |", cycles("zero_wait"), cycles("flash"))
+    };
     for (case, row) in [
         ("circle", "| whole step, circle |"),
         ("ellipse", "| whole step, ellipse, yaw along it |"),
@@ -48,16 +54,15 @@ fn its_costs_are_the_expected_ones() {
         ("route", "| whole step, route of any length |"),
         ("flown", "| as a board flies it: circle chosen at run time, limits and four rotors |"),
     ] {
-        let shown = format!("{row} {} to {} | {} B |", count(case, "best"), count(case, "worst"), bytes(case));
+        let shown = format!("{row} {} to {} | {}", count(case, "best"), count(case, "worst"), rest(case));
         assert!(README.contains(&shown), "{shown}");
     }
     for (case, row) in [("law-circle", "| the law alone, circle |"), ("law-bent", "| the law alone, bent curve |")] {
-        let shown = format!("{row} {} | {} B |", count(case, "worst"), bytes(case));
+        let shown = format!("{row} {} | {}", count(case, "worst"), rest(case));
         assert!(README.contains(&shown), "{shown}");
     }
     let joining =
         format!("| whole step, circle, while joining it from afar | {} at most |", count("joining", "worst"));
-    let tracking =
-        format!("| tracking, without the supervisor | {} | {} B |", count("track", "worst"), bytes("track"));
+    let tracking = format!("| tracking, without the supervisor | {} | {}", count("track", "worst"), rest("track"));
     assert!(README.contains(&joining) && README.contains(&tracking), "{joining}, {tracking}");
 }
