@@ -55,6 +55,16 @@ fn refused(test: &str, scenario: &str) -> String {
 }
 
 #[test]
+fn a_name_that_is_unknown_is_answered_with_those_that_are_known() {
+    for (command, known) in [("run", "figure-eight"), ("check", "fig3a"), ("campaign", "ground-to-ground")] {
+        let output = program().args([command, "fig-of-eight"]).output().expect("it starts");
+        let message = text(&output.stderr);
+        assert!(!output.status.success() && message.contains("fig-of-eight: "), "{message}");
+        assert!(message.contains(known), "{message}");
+    }
+}
+
+#[test]
 fn help_has_examples_for_each_command() {
     for command in [&[][..], &["run"], &["figures"], &["eval"]] {
         let output = program().args(command).arg("--help").output().expect("it starts");
