@@ -234,3 +234,5 @@ await live.close();
 await browser.close();
 rmSync(out, { recursive: true });
 console.log(`${passed} passed, 0 failed`);
+// Not awaited: the programs that were started, which end with this one.
+process.exit();
