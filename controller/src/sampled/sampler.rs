@@ -408,7 +408,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
     ///
     /// If the limit changed the thrust, ζ1 is corrected by (11.7) so that it is the vertical
-    /// acceleration under the thrust actually applied. `alignment` = (q·e3)(q·b3).
+    /// acceleration under the thrust actually applied; not for a step that fades, by which the next
+    /// command would be off again. `alignment` = (q·e3)(q·b3).
     #[inline(never)]
     pub(crate) fn commit(&mut self, command: &Command<T>, u_zeta: T, alignment: T) -> Command<T> {
         self.memory.asked = if let Bump::None = self.memory.bump { *command } else { self.smoothed(command) };
@@ -420,7 +421,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         *is_saturated = applied.thrust != wanted.thrust;
         actuators.push(&applied);
         self.memory.zeta = propagate(&self.memory.zeta, u_zeta, self.memory.period);
-        let missing = command.thrust - acting;
+        let missing = self.memory.asked.thrust - acting;
         self.memory.zeta[0] += missing * alignment * self.memory.weighed.per_total_mass();
         self.memory.u_zeta = u_zeta;
         applied
