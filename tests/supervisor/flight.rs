@@ -111,7 +111,8 @@ impl<L: Law<f32>> Flight<L> {
         self.fly(output)
     }
 
-    fn fly(&mut self, output: Output<f32>) -> Output<f32> {
+    /// A period under an `output`.
+    pub fn fly(&mut self, output: Output<f32>) -> Output<f32> {
         assert_bounded(&output);
         let command = exact(&output.command);
         let share = if self.lag > 0.0 { 1.0 - (-PERIOD / 2.0 / self.lag).exp() } else { 1.0 };
