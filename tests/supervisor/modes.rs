@@ -90,6 +90,11 @@ fn after(event: &str, from: Mode) -> Mode {
             assert_eq!(lost.fault, Some(Fault::PayloadLost));
             // And there it stays, in spite of the request.
             assert!((0..3000).all(|_| flight.step(standing).mode == Mode::Hold));
+            // Until it pulls as before, for three seconds.
+            flight.body.set_payload_mass(0.5);
+            assert!((0..1500).all(|_| flight.step(standing).mode == Mode::Hold));
+            let joins = (0..5000).map(|_| flight.step(standing)).find(|output| output.mode == Mode::Join);
+            assert_eq!(joins.expect("joined again").fault, Some(Fault::Slack));
             lost.mode
         }
         "landed" => {

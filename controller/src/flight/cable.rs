@@ -137,6 +137,12 @@ impl<T: Real> Cable<T> {
         [self.usual, self.pull.down(vehicle)]
     }
 
+    /// The first of them.
+    #[inline]
+    pub(crate) fn usual(&self) -> T {
+        self.usual
+    }
+
     pub(crate) fn is_slack(&self) -> bool {
         self.slackening > T::lit(SLACKENING)
     }

@@ -76,7 +76,8 @@ const CALM_TILT: f64 = 0.95;
 ///
 /// From hold the path is joined at once if follow has just been asked for and the vehicle is inside
 /// its envelope, and otherwise after
-/// [`Policy::calm`]. A fault whose rotors were cut is left by off alone.
+/// [`Policy::calm`]. A fault whose rotors were cut is left by off alone. A payload that is lost keeps
+/// the vehicle in hold, until the cable has pulled for three seconds as it did before the loss.
 ///
 /// Whatever bits come in, the command that goes out is finite and within the limits, its fault is
 /// typed, and nothing that came in stays: the next good state is flown on.
@@ -549,7 +550,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
         self.hold = Hold::from(self.sampler.vehicle(), uav, &self.sampler.swing());
-        self.sampler.soften();
+        self.sampler.leave();
         self.mode = Mode::Hold;
         self.calm = T::zero();
         self.payload.leave();
@@ -569,7 +570,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             Some(Fault::Margin(margin))
         } else if !answer.is_finite() {
             Some(Fault::NotFinite)
-        } else if self.payload.is_lost(self.sampler.weight(), self.sampler.period()) {
+        } else if self.payload.is_lost(self.sampler.weight(), self.cable.usual(), self.sampler.period()) {
             Some(Fault::PayloadLost)
         } else {
             None
@@ -620,6 +621,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 && state.attitude.m33 > T::lit(CALM_TILT)
         });
         self.calm = if is_calm { self.calm + period } else { T::zero() };
+        if self.fault == Some(Fault::PayloadLost) {
+            self.look_for_load();
+        }
         if self.request == Request::Follow && self.calm >= self.policy.calm && self.cable.is_slack() {
             // Nothing else keeps it from the path.
             self.fault = self.fault.or(Some(Fault::Slack));
@@ -630,6 +634,15 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         };
         let command = self.sampler.commit(&wanted, T::zero(), T::zero());
         self.output(command, warning)
+    }
+
+    /// What pulls as it did was unloaded, not lost: the path may be joined again.
+    #[cold]
+    fn look_for_load(&mut self) {
+        let [_, now] = self.cable.down(self.sampler.vehicle());
+        if self.payload.is_back(now, self.sampler.period()) {
+            self.fault = Some(Fault::Slack);
+        }
     }
 
     /// Whether the load hangs from a taut cable, by the `line` to it, m.

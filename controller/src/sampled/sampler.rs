@@ -234,8 +234,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.soften();
     }
 
+    /// No law flies any more: the next command's step fades, and what was not learnt yet is forgotten.
+    pub(crate) fn leave(&mut self) {
+        self.memory.weight.leave();
+        self.soften();
+    }
+
     /// Has the next command's step against what is being applied fade.
-    pub(crate) fn soften(&mut self) {
+    fn soften(&mut self) {
         self.memory.bump = Bump::Coming;
     }
 

@@ -16,7 +16,7 @@ pub enum Cable {
 pub enum Validity {
     /// As good as its standard deviation says.
     Valid,
-    /// Not known yet to 0.15 rad.
+    /// Not known yet to 0.15 rad, or not for a second since the filter began.
     Converging,
     /// The thrust model and the rod have disagreed for a second beyond what noise explains:
     /// something is not as told.
@@ -64,6 +64,11 @@ pub(super) struct CableWatch<T> {
 impl<T: Real> CableWatch<T> {
     pub(super) fn new(cable: Cable) -> Self {
         Self { cable, pull: Vector3::zeros(), against: 0, settling: SETTLING }
+    }
+
+    /// Thrust scale and mass are to be found anew.
+    pub(super) fn settle(&mut self) {
+        (self.against, self.settling) = (0, SETTLING);
     }
 
     /// Takes the `pull` of a window, N, with the payload's `weight`, N. Returns whether the cable

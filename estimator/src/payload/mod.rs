@@ -54,6 +54,10 @@ const ASTRAY: f64 = 20.0;
 const WILD: f64 = 25.0;
 /// Fastest rod, 1/s.
 const FASTEST: f64 = 30.0;
+/// Cycles from a start in which ν²/S has its mean: 1 s at 500 Hz.
+const SEEN: u8 = 17;
+/// Cycles after which what was found with a valid rod is believed without one: 10 s at 500 Hz.
+const PROVEN: u8 = 167;
 /// Standard deviation of an accelerometer that was not read, m/s².
 const UNREAD: f64 = 2.0;
 
@@ -100,6 +104,8 @@ pub struct Payload<T> {
     force: Vector3<T>,
     mean_force: Vector3<T>,
     linearized: Linearized<T>,
+    /// Cycles since the start.
+    age: u8,
     /// Whether the mass has been known to 15 % since the start.
     is_mass_found: bool,
     health: Health<T>,
@@ -138,6 +144,7 @@ impl<T: Real> Payload<T> {
             force: Vector3::new(T::zero(), T::zero(), params.gravity * T::lit(-3.0)),
             mean_force: Vector3::new(T::zero(), T::zero(), -params.gravity),
             linearized: Linearized::none(),
+            age: 0,
             is_mass_found: false,
             health: Health {
                 validity: Validity::Converging,
@@ -322,9 +329,10 @@ impl<T: Real> Payload<T> {
                 self.settle(CYCLE - 2);
                 self.is_mass_found |= self.covariance.get(index::MASS, index::MASS) < T::lit(0.15 * 0.15);
                 if self.is_astray() {
-                    self.restart(false);
+                    self.restart();
                 }
                 self.health = self.judge();
+                self.age = self.age.saturating_add(1);
             }
             5 => self.spread(pendulum, pivot),
             6 => {
@@ -350,33 +358,47 @@ impl<T: Real> Payload<T> {
         let mass = self.params.payload_mass * (T::one() + self.state.mass_ratio);
         let pull = self.state.rod * (mass * self.pull.tension) + attitude * self.mean.residual * self.params.uav_mass;
         if self.watch.look(&pull, mass * self.params.gravity) {
-            self.restart(true);
+            self.restart();
         }
     }
 
     /// What is measured has been far from what was expected for a second: the filter is sure of a
-    /// rod that is not there.
+    /// rod that is not there. Less far will do where no mass is small or large enough for it.
     fn is_astray(&self) -> bool {
         let ([x, y, z], [rod_x, rod_y]) = (self.surprise, self.load_surprise);
-        self.watch.cable == Cable::Taut && x.max(y).max(z).max(rod_x).max(rod_y) > T::lit(ASTRAY)
+        let most = if self.state.is_mass_at_bound() { CONSISTENT } else { ASTRAY };
+        self.watch.cable == Cable::Taut && x.max(y).max(z).max(rod_x).max(rod_y) > T::lit(most)
     }
 
     /// The cable has changed, or the filter has lost the rod: taut, the rod is where it pulls, and
     /// nothing is known of its swing or of what hangs there; slack, there is no rod.
-    fn restart(&mut self, is_new: bool) {
+    ///
+    /// A filter that was wrong of the rod was so of what it has learnt by it: all begins as told.
+    /// Next to no mass, blown far out, under weak rotors is one false answer, and by its thrust
+    /// scale every cable would be slack for ever. Only where a rod that was long known ends do wind
+    /// and rotors stay as they were found.
+    fn restart(&mut self) {
+        let is_slack = self.watch.cable == Cable::Slack;
+        let start = self.params.noise.start();
+        if is_slack && self.age >= PROVEN && self.health.validity == Validity::Valid {
+            self.state.set_rod([T::zero(); 2], [T::zero(); 2]);
+            for (component, deviation) in start.into_iter().enumerate() {
+                if component < index::WIND || component == index::MASS {
+                    self.covariance.forget(component, deviation * deviation);
+                }
+            }
+        } else {
+            self.state = PayloadState::hanging();
+            self.covariance = Covariance::diagonal(&start);
+            self.watch.settle();
+        }
         let pull = self.watch.pull;
-        self.state.set_rod([T::zero(); 2], [T::zero(); 2]);
-        if self.watch.cable == Cable::Taut && pull.z > T::zero() {
+        if !is_slack && pull.z > T::zero() {
             let per_length = T::one() / pull.dot(&pull).sqrt();
             self.state.set_rod([pull.x * per_length, pull.y * per_length], [T::zero(); 2]);
         }
-        for (component, deviation) in self.params.noise.start().into_iter().enumerate() {
-            // What hangs there may be another load only where the cable was slack.
-            if component < index::WIND || (component == index::MASS && is_new) {
-                self.covariance.forget(component, deviation * deviation);
-            }
-        }
-        self.is_mass_found &= !is_new;
+        self.age = 0;
+        self.is_mass_found = false;
         self.surprise = [T::one(); 3];
         self.load_surprise = [T::one(); 2];
         self.fresh = [Innovations::none(); 2];
@@ -498,7 +520,7 @@ impl<T: Real> Payload<T> {
         let [x, y, z] = self.surprise;
         if self.watch.cable == Cable::Slack {
             Validity::Slack
-        } else if rod_deviation > T::lit(KNOWN) {
+        } else if rod_deviation > T::lit(KNOWN) || self.age < SEEN {
             Validity::Converging
         } else if x.max(y).max(z) > T::lit(CONSISTENT) {
             Validity::Inconsistent

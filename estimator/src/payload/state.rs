@@ -47,6 +47,10 @@ pub struct PayloadState<T> {
 /// Largest |q_h|² that a correction may lead to: 71.6° from the vertical.
 const STEEPEST: f64 = 0.9;
 
+/// Mass ratios that a correction may lead to.
+const LIGHTEST: f64 = -0.7;
+const HEAVIEST: f64 = 2.5;
+
 impl<T: Real> PayloadState<T> {
     /// Rod straight down, at rest, still air, everything as told.
     pub(crate) fn hanging() -> Self {
@@ -82,7 +86,12 @@ impl<T: Real> PayloadState<T> {
         self.residual = [self.residual[0] + r1, self.residual[1] + r2];
         self.offset = [self.offset[0] + l1, self.offset[1] + l2];
         self.thrust_scale = (self.thrust_scale + thrust).clamp(T::lit(0.5), T::lit(1.5));
-        self.mass_ratio = (self.mass_ratio + mass).clamp(T::lit(-0.7), T::lit(2.5));
+        self.mass_ratio = (self.mass_ratio + mass).clamp(T::lit(LIGHTEST), T::lit(HEAVIEST));
+    }
+
+    /// Whether the mass is as far from what was told as a correction may lead.
+    pub(crate) fn is_mass_at_bound(&self) -> bool {
+        self.mass_ratio <= T::lit(LIGHTEST) || self.mass_ratio >= T::lit(HEAVIEST)
     }
 }
 

@@ -222,10 +222,9 @@ pub fn fly(
             sees_load: read.sees_load || !has_begun,
             ..read
         };
-        let allowed = sight.as_ref().map_or(request, |sight| sight.allows(request));
         has_begun = true;
         // A controller counts its periods.
-        let Some(decision) = pilot.step(&read, allowed, step as f64 * period) else {
+        let Some(decision) = pilot.step(&read, request, step as f64 * period) else {
             end = End::Unanswered(t_s);
             break;
         };

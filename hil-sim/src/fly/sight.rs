@@ -1,10 +1,10 @@
 //! What a law sees through an estimator: instruments, navigation, payload filter, all in the
 //! flight's own arithmetic.
 
-use controller::{Command, Matrix3, Request, State, Uav, Vector3};
+use controller::{Command, Matrix3, State, Uav, Vector3};
 use estimator::{
-    Cable, Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload,
-    PayloadParams, Validity,
+    Estimate, Fix, Imu, LoadMeasurement, Motion, Navigation, NavigationParams, OutOfRange, Payload, PayloadParams,
+    Validity,
 };
 use std::collections::VecDeque;
 
@@ -12,7 +12,7 @@ use crate::describe::scenario::{EstimatorSpec, Scenario};
 use crate::world::random::Purpose;
 use crate::world::sensors::gnss::FixReading;
 use crate::world::sensors::mocap::PoseReading;
-use crate::world::{Body, InstrumentModel, Reading, Seed, World};
+use crate::world::{InstrumentModel, Reading, Seed, World};
 
 /// Motion capture's own word on its accuracy: a little more than its noise, since its frames are
 /// not all independent.
@@ -91,12 +91,6 @@ pub fn is_known(validity: Validity, before: bool) -> bool {
     }
 }
 
-/// What may be asked for of what is `wanted`: to follow only a rod that is known.
-#[must_use]
-pub fn allowed(wanted: Request, is_known: bool) -> Request {
-    if wanted == Request::Follow && !is_known { Request::Hold } else { wanted }
-}
-
 impl Sight {
     /// The estimator of `scenario` for a flight that starts at `state` of the body under `hover`
     /// thrust, N. It is told the UAV's motion with errors of a settled navigation, and that the rod
@@ -153,7 +147,7 @@ impl Sight {
     }
 
     /// What is seen of `world` at the end of a period under `command`: the payload filter's state,
-    /// and the UAV by navigation where the cable may be slack.
+    /// once it is known, and the UAV by navigation.
     pub fn see(&mut self, world: &World, command: &Command<f64>) -> Reading {
         let readings = self.instruments.read(world);
         self.specific_force = readings.imu.specific_force;
@@ -176,18 +170,16 @@ impl Sight {
         if let Some(pose) = &readings.pose {
             self.capture(pose);
         }
-        // On a rod the flight has begun, and there is no navigation beside the state to hold by.
-        let apart = matches!(world.body(), Body::Cable(_));
-        self.has_found = !apart || is_known(estimate.health.validity, self.has_found);
+        self.has_found = is_known(estimate.health.validity, self.has_found);
         self.estimate = Some(estimate);
         let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
         let uav = Uav { position, velocity, attitude, body_rate };
         Reading {
             comes: true,
             state: estimate.state.cast(),
-            sees_load: !apart || estimate.cable == Cable::Taut,
-            uav: apart.then(|| estimate.beside(&uav).cast()),
-            specific_force: apart.then(|| specific_force.map(f64::from)),
+            sees_load: self.has_found,
+            uav: Some(estimate.beside(&uav).cast()),
+            specific_force: Some(specific_force.map(f64::from)),
         }
     }
 
@@ -205,13 +197,6 @@ impl Sight {
         if let Some(load) = &pose.load {
             self.payload.observe(&LoadMeasurement::Position(single(load), deviation), pose.age as f32);
         }
-    }
-
-    /// What may be asked for of what is `wanted`: to follow only once the rod is known, and to hold
-    /// until then.
-    #[must_use]
-    pub fn allows(&self, wanted: Request) -> Request {
-        allowed(wanted, self.has_found)
     }
 
     /// The last estimate.

@@ -1,13 +1,13 @@
 //! The payload filter over a log's motion of the UAV.
 
-use controller::{Request, State, Vector3};
-use estimator::{Cable, Motion, Payload};
+use controller::{State, Vector3};
+use estimator::{Motion, Payload};
 
 use super::logged::UavMotion;
 use crate::describe::input::Invalid;
 use crate::describe::scenario::Scenario;
 use crate::fly::sample::Seen;
-use crate::fly::sight::{RotorModel, allowed, is_known, payload_filter};
+use crate::fly::sight::{RotorModel, is_known, payload_filter};
 
 /// The filter, and thrust as its autopilot has it.
 pub struct Filter {
@@ -21,8 +21,8 @@ pub struct Filter {
 pub struct Found {
     /// The law's state.
     pub state: State<f64>,
-    /// Whether the cable carries.
-    pub cable: Cable,
+    /// Whether the rod is known, and so the state.
+    pub is_known: bool,
     /// For the log.
     pub seen: Seen,
 }
@@ -59,12 +59,7 @@ impl Filter {
             position_deviation: None,
             validity: estimate.health.validity,
         };
-        Found { state: estimate.state.cast(), cable: estimate.cable, seen }
-    }
-
-    /// What may be asked for of what is `wanted`.
-    pub fn allows(&self, wanted: Request) -> Request {
-        allowed(wanted, self.has_found)
+        Found { state: estimate.state.cast(), is_known: self.has_found, seen }
     }
 }
 

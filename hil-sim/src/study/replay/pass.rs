@@ -1,7 +1,6 @@
 //! One pass through a log: the flight loop with the log in the world's place.
 
 use controller::{Command, Request, State, Uav, Vector3};
-use estimator::Cable;
 
 use super::agreement::Agreement;
 use super::filter::{Filter, Found};
@@ -144,18 +143,19 @@ impl<'a> Pass<'a> {
         let Instant { uav, specific_force, truth, found } = instant;
         let found = found.as_ref().filter(|_| self.is_estimated);
         let given = if self.is_estimated { found.map(|found| found.state) } else { *truth };
-        if !self.has_begun {
+        let is_first = !self.has_begun;
+        if is_first {
             let state = given.as_ref()?;
             if !self.scenario.standing {
                 self.begin(state);
             }
             self.has_begun = true;
         }
-        let uav = uav.as_ref().filter(|_| self.is_apart);
+        let uav = uav.as_ref().filter(|_| self.is_apart || self.is_estimated);
         let reading = Reading {
             comes: given.is_some(),
             state: given.unwrap_or_else(|| State::at_rest(Vector3::zeros())),
-            sees_load: !self.is_apart || found.is_none_or(|found| found.cable == Cable::Taut),
+            sees_load: is_first || found.is_none_or(|found| found.is_known),
             uav: uav.map(|&UavMotion { position, velocity, attitude, body_rate }| Uav {
                 position,
                 velocity,
@@ -164,7 +164,6 @@ impl<'a> Pass<'a> {
             }),
             specific_force: uav.and(*specific_force),
         };
-        let request = if self.is_apart && self.is_estimated { self.filter.allows(request) } else { request };
         self.pilot.actuation().set(logged);
         let decision = self.pilot.step(&reading, request, t_s)?;
         // Not what was applied, but what the law would have.
