@@ -57,7 +57,9 @@ enum slung_status {
     SLUNG_UNSTABLE_GAINS = -9,
     SLUNG_BAD_STATE = -10,
     SLUNG_UNKNOWN_ENUMERATOR = -11,
-    SLUNG_NO_ROUTE = -12
+    SLUNG_NO_ROUTE = -12,
+    SLUNG_LATE = -13,
+    SLUNG_OUTLIER = -14
 };
 
 /* What the pilot wants, as uint32_t. */
@@ -144,6 +146,11 @@ typedef struct slung_estimator {
     uint64_t storage[256];
 } slung_estimator;
 
+/* A navigation filter; slung_navigation_create makes it. */
+typedef struct slung_navigation {
+    uint64_t storage[320];
+} slung_navigation;
+
 /* Room for a control point of a route, and for the part of one between two stops. */
 typedef struct slung_knot {
     float numbers[15];
@@ -177,6 +184,41 @@ typedef struct slung_mounting {
     float payload_drag[2];
 } slung_mounting;
 
+/* What a navigation filter is told. Set struct_size to sizeof(slung_navigation_settings), then slung_navigation_defaults fills it in:
+ * a MEMS IMU in flight and an RTK receiver. Standard deviations, and square roots of spectral densities (rthz: per square root of
+ * Hz; rts: per square root of s). */
+typedef struct slung_navigation_settings {
+    uint32_t struct_size;
+    float imu_frd_m[3];                /* where the IMU sits, from the UAV's centre of mass, each within 2 */
+    float antenna_frd_m[3];            /* where the antenna sits, likewise */
+    float declination_rad;             /* where a level compass points, from north toward east */
+    float accelerometer_m_s2_rthz;     /* noise IN FLIGHT, 1e-4 to 1 */
+    float gyro_rad_s_rthz;             /* noise in flight, 1e-6 to 0.1 */
+    float accelerometer_walk_m_s2_rts; /* walk of its bias, 1e-7 to 0.1 */
+    float gyro_walk_rad_s_rts;         /* likewise, 1e-8 to 0.01 */
+    float fix_position_m[2];           /* least error of a receiver's fix that is believed, horizontal and vertical, 1e-3 to 100 */
+    float fix_velocity_m_s[2];         /* likewise, 1e-3 to 10 */
+    float heading_rad;                 /* of a heading or magnetic field, its slow error with it, 1e-3 to 3 */
+    float barometer_m;                 /* likewise, 0.01 to 100 */
+    float barometer_time_s;            /* over which the barometer's offset follows the fixes, 1 to 1e4 */
+    float start_position_m;            /* how well the start is known: position, 1e-3 to 1e5 */
+    float start_velocity_m_s;          /* 1e-3 to 1000 */
+    float start_tilt_rad;              /* 1e-3 to 3 */
+    float start_heading_rad;           /* 1e-3 to 3 */
+    float start_gyro_rad_s;            /* bias of the gyro, 1e-5 to 1 */
+    float start_accelerometer_m_s2;    /* bias of the accelerometer, 1e-4 to 10 */
+} slung_navigation_settings;
+
+/* A fix: of the antenna where a receiver gives it, of the centre of mass where motion capture does. A vector of three times not a number
+ * is not measured. */
+typedef struct slung_fix {
+    float position_world_m[3];
+    float velocity_world_m_s[3];
+    float position_deviation_m[2];   /* as the source states it, horizontal and vertical */
+    float velocity_deviation_m_s[2]; /* likewise */
+    float age_s;                     /* how old it is when it comes, 0 to 0.3 */
+} slung_fix;
+
 /* Why a call was refused. Set struct_size to sizeof(slung_error) before the call. */
 typedef struct slung_error {
     uint32_t struct_size;
@@ -205,6 +247,21 @@ typedef struct slung_uav {
     float quaternion_body_to_world[4]; /* w, x, y, z; of unit length */
     float body_rate_rad_s[3];
 } slung_uav;
+
+/* What a navigation filter has found. Set struct_size to sizeof(slung_navigated) before the call. */
+typedef struct slung_navigated {
+    uint32_t struct_size;
+    uint32_t blind;  /* 1 while the IMU has been silent for more than 50 periods */
+    uint32_t resets; /* how often the filter has started anew from a fix: uav has jumped when this changes */
+    float fix_age_s; /* since the last fix that was taken */
+    float position_deviation_m; /* standard deviation, horizontal, both axes together */
+    float velocity_deviation_m_s;
+    float tilt_deviation_rad;
+    float gyro_bias_body_rad_s[3];
+    float accelerometer_bias_body_m_s2[3];
+    float specific_force_body_m_s2[3]; /* less its bias: for slung_estimator_step and slung_step_measured, with uav */
+    slung_uav uav;
+} slung_navigated;
 
 /* The state that the law is stepped on. */
 typedef struct slung_state {
@@ -340,6 +397,43 @@ int32_t slung_estimator_step(slung_estimator *estimator, uint32_t frames, const 
 int32_t slung_estimator_observe(slung_estimator *estimator, uint32_t frames, const float payload_position_world_m[3],
                                 float deviation_m, float age_s);
 size_t slung_estimator_bytes(void);
+
+/* The UAV's own motion from an IMU and what tells where it is, for who has no autopilot's navigation. Link with --gc-sections: who does not
+ * call these does not carry them. In a period: what has come, then the step, whose answer goes to the estimator and the controller:
+ *
+ *     slung_navigation_fix(&navigation, frames, &fix);            when one has come; so with the others
+ *     slung_navigation_step(&navigation, frames, body_rate, specific_force, &navigated);
+ *     slung_estimator_step(&estimator, frames, &navigated.uav, navigated.specific_force_body_m_s2, thrust_n, &estimate);
+ *     slung_step_measured(&controller, &estimate.state, frames, &navigated.uav, navigated.specific_force_body_m_s2, request, &output);
+ *
+ * Measurements that are refused leave the filter as it was: SLUNG_OUT_OF_RANGE where a number can't be, SLUNG_LATE where one is older
+ * than the filter remembers or from the future, SLUNG_OUTLIER where a position is more than ten deviations off. Fifteen outliers in
+ * a row, and the filter starts anew from the last: resets tells. */
+int32_t slung_navigation_defaults(slung_navigation_settings *settings);
+/* A UAV that stands still at the origin: down is where the mean specific force is not, forward has this heading (from north toward east).
+ * Write its position into it, and it is a start. SLUNG_OUT_OF_RANGE: the force says nothing, or the heading is not a number. */
+int32_t slung_navigation_at_rest(uint32_t frames, const float specific_force_body_m_s2[3], float heading_rad, slung_uav *uav);
+/* Makes a filter that is stepped at the parameters' CTL_PERIOD (1 to 10 ms) and begins at start. bytes is sizeof(slung_navigation);
+ * settings may be NULL: the defaults; error may be NULL. SLUNG_BAD_STATE: the start is no state. */
+int32_t slung_navigation_create(slung_navigation *navigation, size_t bytes, const slung_parameters *parameters,
+                                const slung_navigation_settings *settings, uint32_t frames, const slung_uav *start,
+                                slung_error *error);
+/* A fix of a satellite receiver. */
+int32_t slung_navigation_fix(slung_navigation *navigation, uint32_t frames, const slung_fix *fix);
+/* A pose by motion capture: a fix of the centre of mass, and the attitude (w, x, y, z; may be NULL) with its standard deviation. */
+int32_t slung_navigation_pose(slung_navigation *navigation, uint32_t frames, const slung_fix *fix,
+                              const float quaternion_body_to_world[4], float attitude_deviation_rad);
+/* Height above the origin by pressure: POSITIVE UP, whatever the axes. */
+int32_t slung_navigation_height(slung_navigation *navigation, float height_up_m);
+/* Heading of the UAV's forward axis, from north toward east, whatever the axes. */
+int32_t slung_navigation_heading(slung_navigation *navigation, float heading_rad);
+/* The magnetic field in the body axes of frames, of any unit. */
+int32_t slung_navigation_magnetic_field(slung_navigation *navigation, uint32_t frames, const float field_body[3]);
+/* One period, which ends with the IMU's reading: the newest body rate, and the mean specific force (-g along the body's down axis at
+ * rest). Either may be NULL: none this period, and the last goes on. */
+int32_t slung_navigation_step(slung_navigation *navigation, uint32_t frames, const float body_rate_rad_s[3],
+                              const float specific_force_body_m_s2[3], slung_navigated *navigated);
+size_t slung_navigation_bytes(void);
 
 /* Texts; never NULL. */
 const char *slung_status_text(int32_t status);

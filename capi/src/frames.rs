@@ -1,6 +1,7 @@
 //! States of what autopilots report. The conversion is the model's; here are its pointers.
 
-use controller::{Frames, Matrix3, State, Uav, Vector3};
+use controller::{Frames, Matrix3, Real, State, Uav, Vector3};
+use estimator::Motion;
 
 use crate::pointer::{exclusive, shared};
 use crate::status::{Status, code};
@@ -21,7 +22,7 @@ pub fn frames(number: u32) -> Result<Frames, Status> {
 
 /// The rotation of a unit quaternion (w, x, y, z). Of one of another length it is the length's
 /// square times a rotation, which the state's check finds.
-fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
+pub fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
     let [w, x, y, z] = quaternion;
     let twice = |a: f32| a + a;
     Matrix3::new(
@@ -35,6 +36,36 @@ fn rotation(quaternion: [f32; 4]) -> Matrix3<f32> {
         twice(y * z + w * x),
         w * w - x * x - y * y + z * z,
     )
+}
+
+/// The unit quaternion (w, x, y, z) of a rotation: from the largest of its four components, so that
+/// nothing is divided by a small one.
+pub fn quaternion(r: &Matrix3<f32>) -> [f32; 4] {
+    // Rows of 4 q qᵀ; the one with the largest diagonal element is a multiple of q.
+    let [a, b, c] = [r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12];
+    let [d, e, f] = [r.m21 + r.m12, r.m13 + r.m31, r.m32 + r.m23];
+    let [w, x, y, z] = [
+        1.0 + r.m11 + r.m22 + r.m33,
+        1.0 + r.m11 - r.m22 - r.m33,
+        1.0 - r.m11 + r.m22 - r.m33,
+        1.0 - r.m11 - r.m22 + r.m33,
+    ];
+    let (largest, row) = [(x, [a, x, d, e]), (y, [b, d, y, f]), (z, [c, e, f, z])]
+        .into_iter()
+        .fold((w, [w, a, b, c]), |best, next| if next.0 > best.0 { next } else { best });
+    let scale = 0.5 / Real::sqrt(largest);
+    row.map(|component| component * scale)
+}
+
+/// How a filter says that the UAV moves, in the axes of `frames`, each of whose maps is its own
+/// inverse.
+pub fn reported(frames: Frames, motion: &Motion<f32>) -> SlungUav {
+    SlungUav {
+        position_world_m: frames.inertial(&motion.position).into(),
+        velocity_world_m_s: frames.inertial(&motion.velocity).into(),
+        quaternion_body_to_world: quaternion(&frames.attitude(&motion.attitude)),
+        body_rate_rad_s: frames.body(&motion.body_rate).into(),
+    }
 }
 
 /// The UAV in the library's own axes.

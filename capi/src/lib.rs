@@ -8,6 +8,7 @@
 mod controller;
 mod estimator;
 mod frames;
+mod navigation;
 mod parameters;
 mod path;
 mod pointer;
@@ -25,6 +26,11 @@ pub use crate::estimator::{
     slung_estimator_step,
 };
 pub use crate::frames::{slung_state_from_cable, slung_state_from_payload};
+pub use crate::navigation::{
+    BYTES as NAVIGATION_BYTES, slung_navigation_at_rest, slung_navigation_bytes, slung_navigation_create,
+    slung_navigation_defaults, slung_navigation_fix, slung_navigation_heading, slung_navigation_height,
+    slung_navigation_magnetic_field, slung_navigation_pose, slung_navigation_step,
+};
 pub use crate::parameters::{
     BYTES as PARAMETERS_BYTES, slung_parameter_count, slung_parameter_info, slung_parameters_bytes,
     slung_parameters_default, slung_parameters_get, slung_parameters_set,

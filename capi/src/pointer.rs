@@ -96,3 +96,27 @@ pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> 
     }
     Ok(())
 }
+
+/// What a caller says in a structure that begins with its size, and `default` in the fields that the
+/// caller's header did not know of.
+///
+/// # Errors
+/// As [`write_sized`].
+///
+/// # Safety
+/// As [`write_sized`], for reading; any bits make a `T`.
+pub unsafe fn read_sized<T: Sized32>(source: *const T, default: T, least: u32) -> Result<T, Status> {
+    // SAFETY: the caller's promise, and the trait's: the first field is a u32.
+    let room = *unsafe { shared(source.cast::<u32>())? };
+    if !source.is_aligned() {
+        return Err(Status::Misaligned);
+    }
+    if room < least {
+        return Err(Status::StructSize);
+    }
+    let (mut value, bytes) = (default, room.min(T::SIZE) as usize);
+    // SAFETY: `room` bytes may be read there, and `bytes` is at most that and at most the value's
+    // size.
+    unsafe { core::ptr::copy_nonoverlapping(source.cast::<u8>(), (&raw mut value).cast::<u8>(), bytes) };
+    Ok(value)
+}

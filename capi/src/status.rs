@@ -36,6 +36,10 @@ pub enum Status {
     UnknownEnumerator = -11,
     /// Waypoints make no route: a leg is too short, or a turn too sharp.
     NoRoute = -12,
+    /// A measurement is older than the filter remembers, or from the future.
+    Late = -13,
+    /// A measurement is too far off what is known.
+    Outlier = -14,
 }
 
 /// `Ok` as zero.

@@ -80,6 +80,8 @@ pub extern "C" fn slung_status_text(status: i32) -> *const c_char {
         -10 => c"the state is not finite, or outside the range that the law is trusted with",
         -11 => c"an enumerator has none of its values",
         -12 => c"the waypoints make no route: a leg is too short, or a turn too sharp",
+        -13 => c"the measurement is older than the filter remembers, or from the future",
+        -14 => c"the measurement is more than ten deviations off",
         _ => c"unknown status",
     };
     text.as_ptr()
@@ -112,6 +114,8 @@ pub extern "C" fn slung_fault_text(fault: u32) -> *const c_char {
         3 => c"no point of the path was found from here",
         4 => c"the payload is gone",
         5 => c"the cable is slack",
+        6 => c"load and UAV are measured where no cable of this length could have them",
+        7 => c"the UAV hung from its cable while it landed: the load is caught",
         0x100 => c"the payload's position is not finite or out of range",
         0x101 => c"the payload's velocity is not finite or out of range",
         0x102 => c"the rod's direction is not a unit vector",

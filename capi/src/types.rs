@@ -231,3 +231,97 @@ pub struct SlungEstimate {
 
 // SAFETY: as above.
 unsafe impl Sized32 for SlungEstimate {}
+
+/// What a navigation filter is told: `slung_navigation_settings`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungNavigationSettings {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// From the centre of mass, m.
+    pub imu_frd_m: [f32; 3],
+    /// From the centre of mass, m.
+    pub antenna_frd_m: [f32; 3],
+    /// From n1 toward n2, rad.
+    pub declination_rad: f32,
+    /// m/s²/√Hz.
+    pub accelerometer_m_s2_rthz: f32,
+    /// rad/s/√Hz.
+    pub gyro_rad_s_rthz: f32,
+    /// m/s²/√s.
+    pub accelerometer_walk_m_s2_rts: f32,
+    /// rad/s/√s.
+    pub gyro_walk_rad_s_rts: f32,
+    /// Horizontal and down, m.
+    pub fix_position_m: [f32; 2],
+    /// Horizontal and down, m/s.
+    pub fix_velocity_m_s: [f32; 2],
+    /// rad.
+    pub heading_rad: f32,
+    /// m.
+    pub barometer_m: f32,
+    /// s.
+    pub barometer_time_s: f32,
+    /// m.
+    pub start_position_m: f32,
+    /// m/s.
+    pub start_velocity_m_s: f32,
+    /// rad.
+    pub start_tilt_rad: f32,
+    /// rad.
+    pub start_heading_rad: f32,
+    /// rad/s.
+    pub start_gyro_rad_s: f32,
+    /// m/s².
+    pub start_accelerometer_m_s2: f32,
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungNavigationSettings {}
+
+/// A fix of a receiver or of motion capture: `slung_fix`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungFix {
+    /// Three times not a number: not measured.
+    pub position_world_m: [f32; 3],
+    /// Likewise.
+    pub velocity_world_m_s: [f32; 3],
+    /// Horizontal and vertical.
+    pub position_deviation_m: [f32; 2],
+    /// Horizontal and vertical.
+    pub velocity_deviation_m_s: [f32; 2],
+    /// s.
+    pub age_s: f32,
+}
+
+/// What navigation has found: `slung_navigated`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungNavigated {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// 1 while the IMU has been silent for more than 0.1 s.
+    pub blind: u32,
+    /// How often the filter has started anew from a fix.
+    pub resets: u32,
+    /// Since the last fix that was taken, s.
+    pub fix_age_s: f32,
+    /// Horizontal, both axes together, m.
+    pub position_deviation_m: f32,
+    /// m/s.
+    pub velocity_deviation_m_s: f32,
+    /// Of the attitude's tilt, rad.
+    pub tilt_deviation_rad: f32,
+    /// Found, in the body axes of the call.
+    pub gyro_bias_body_rad_s: [f32; 3],
+    /// Likewise.
+    pub accelerometer_bias_body_m_s2: [f32; 3],
+    /// The period's mean less its bias.
+    pub specific_force_body_m_s2: [f32; 3],
+    /// The UAV at the period's end.
+    pub uav: SlungUav,
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungNavigated {}

@@ -1,4 +1,4 @@
-/* Flies every kind of path and law, a route and the estimator for 500 steps each and prints a digest of each byte that comes out: on a host and on a target
+/* Flies every kind of path and law, a route, the estimator and navigation for 500 steps each and prints a digest of each byte that comes out: on a host and on a target
  * the same. States are whole numbers times powers of two, so that no compiler's way with floats enters them. */
 #include "slung.h"
 
@@ -118,6 +118,57 @@ static int estimate(void) {
     return stack > STEP_STACK ? print_failure("estimator", "stack of a step") : 0;
 }
 
+/* Every measurement in turn, late and wrong ones too, in axes that are not the library's. */
+static int navigate(void) {
+    static slung_parameters parameters;
+    static slung_navigation navigation;
+    slung_navigation_settings settings = {0};
+    const float rest[3] = {0, 0, 9.8125f}, nothing = print_nan();
+    const float level[4] = {1, 0, 0, 0};
+    unsigned stack = 0;
+    slung_uav start;
+    random_state = 1;
+    digest = 14695981039346656037u;
+    slung_parameters_default(&parameters, sizeof parameters);
+    settings.struct_size = sizeof settings;
+    slung_navigation_defaults(&settings);
+    settings.imu_frd_m[0] = 0.0625f;
+    settings.antenna_frd_m[2] = -0.125f;
+    settings.declination_rad = 0.0625f;
+    if (slung_navigation_at_rest(SLUNG_ENU_FLU, rest, 0.5f, &start) != SLUNG_OK) return print_failure("navigation", "at rest");
+    take(&start, sizeof start);
+    if (slung_navigation_create(&navigation, sizeof navigation, &parameters, &settings, SLUNG_ENU_FLU, &start, NULL) != SLUNG_OK)
+        return print_failure("navigation", "create");
+    for (int step = 0; step < 500; ++step) {
+        slung_navigated found = {0};
+        slung_fix fix = {{0}, {0}, {0.03125f, 0.0625f}, {0.0625f, 0.125f}, 0.125f};
+        float rate[3], force[3], field[3] = {0.25f, 0.125f, -0.5f};
+        int32_t status[5] = {0};
+        found.struct_size = sizeof found;
+        for (int i = 0; i < 3; ++i) {
+            rate[i] = 0.125f * about_zero();
+            force[i] = rest[i] + about_zero();
+            fix.position_world_m[i] = 0.0625f * about_zero() + (step % 100 >= 80 ? 64.0f : 0.0f);
+            fix.velocity_world_m_s[i] = step % 3 ? 0.0625f * about_zero() : nothing;
+        }
+        if (step % 71 == 70) fix.age_s = 2;
+        if (step % 67 == 66) force[1] = nothing;
+        stack_paint();
+        if (step % 10 == 0) status[0] = slung_navigation_fix(&navigation, SLUNG_ENU_FLU, &fix);
+        if (step % 10 == 5) status[1] = slung_navigation_pose(&navigation, SLUNG_ENU_FLU, &fix, step % 20 == 5 ? level : NULL, 0.0625f);
+        if (step % 20 == 3) status[2] = slung_navigation_height(&navigation, about_zero());
+        if (step % 20 == 7) status[3] = slung_navigation_heading(&navigation, 0.5f + 0.0625f * about_zero());
+        if (step % 20 == 9) status[4] = slung_navigation_magnetic_field(&navigation, SLUNG_ENU_FLU, field);
+        slung_navigation_step(&navigation, SLUNG_ENU_FLU, step % 50 == 49 ? NULL : rate, force, &found);
+        if (stack_used() > stack) stack = stack_used();
+        take(status, sizeof status);
+        take(&found, sizeof found);
+    }
+    print_digest("navigation", digest);
+    print_stack("navigation", stack);
+    return stack > STEP_STACK ? print_failure("navigation", "stack of a step") : 0;
+}
+
 int flight(void) {
     static const char *const kind[] = {"PATH_KIND", "PATH_YAW_KIND", "PATH_ACC", "PATH_NRM_1"};
     static const char *const law[] = {"CTL_LAW", "K3_0", "K3_1", "K3_2", "K3_3", "K3_4", "K3_5"};
@@ -133,5 +184,5 @@ int flight(void) {
     failures += fly("tracking", law, tracking, 7);
     failures += fly("late", sampled, late, 4);
     failures += fly("route", NULL, NULL, 0);
-    return failures + estimate();
+    return failures + estimate() + navigate();
 }

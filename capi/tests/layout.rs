@@ -6,8 +6,8 @@ use std::mem::{offset_of, size_of};
 use std::process::Command;
 
 use capi::types::{
-    SlungError, SlungEstimate, SlungMounting, SlungOutput, SlungPace, SlungParameter, SlungState, SlungTelemetry,
-    SlungUav, SlungWaypoint, SlungWrench,
+    SlungError, SlungEstimate, SlungFix, SlungMounting, SlungNavigated, SlungNavigationSettings, SlungOutput,
+    SlungPace, SlungParameter, SlungState, SlungTelemetry, SlungUav, SlungWaypoint, SlungWrench,
 };
 
 /// What `layout.c` prints, by Rust.
@@ -33,6 +33,9 @@ fn layout() -> String {
         "slung_pace" SlungPace { acceleration_m_s2 stop_rate_1_s rise_s }
         "slung_mounting" SlungMounting { hook_frd_m imu_frd_m uav_drag payload_drag }
         "slung_estimate" SlungEstimate { struct_size validity taut tension_n rod_deviation_rad rate_deviation_1_s state }
+        "slung_navigation_settings" SlungNavigationSettings { struct_size imu_frd_m antenna_frd_m declination_rad accelerometer_m_s2_rthz gyro_rad_s_rthz accelerometer_walk_m_s2_rts gyro_walk_rad_s_rts fix_position_m fix_velocity_m_s heading_rad barometer_m barometer_time_s start_position_m start_velocity_m_s start_tilt_rad start_heading_rad start_gyro_rad_s start_accelerometer_m_s2 }
+        "slung_fix" SlungFix { position_world_m velocity_world_m_s position_deviation_m velocity_deviation_m_s age_s }
+        "slung_navigated" SlungNavigated { struct_size blind resets fix_age_s position_deviation_m velocity_deviation_m_s tilt_deviation_rad gyro_bias_body_rad_s accelerometer_bias_body_m_s2 specific_force_body_m_s2 uav }
     }
     text
 }
@@ -53,19 +56,35 @@ fn a_c_compiler_lays_the_structures_out_as_the_library_does() {
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let printed = String::from_utf8(Command::new(&program).output().unwrap().stdout).unwrap();
     // Storage that is the caller's: large enough, or for knots and runs, just so large.
-    let lent =
-        ["slung_parameters ", "slung_controller ", "slung_route ", "slung_estimator ", "slung_knot ", "slung_run "];
+    let lent = [
+        "slung_parameters ",
+        "slung_controller ",
+        "slung_route ",
+        "slung_estimator ",
+        "slung_navigation ",
+        "slung_knot ",
+        "slung_run ",
+    ];
     let (instances, structures): (Vec<_>, Vec<_>) =
         printed.lines().partition(|line| lent.iter().any(|name| line.starts_with(name)));
     let bytes = |line: &&str| line.rsplit(' ').next().unwrap().parse::<usize>().unwrap();
     let [knot, run] = [size_of::<controller::Knot<f32>>(), size_of::<controller::Run<f32>>()];
     assert_eq!(
         instances.iter().map(bytes).collect::<Vec<_>>(),
-        [capi::PARAMETERS_BYTES, capi::CONTROLLER_BYTES, capi::ROUTE_BYTES, capi::ESTIMATOR_BYTES, knot, run]
+        [
+            capi::PARAMETERS_BYTES,
+            capi::CONTROLLER_BYTES,
+            capi::ROUTE_BYTES,
+            capi::ESTIMATOR_BYTES,
+            capi::NAVIGATION_BYTES,
+            knot,
+            run
+        ]
     );
     assert!(capi::slung_parameters_bytes() <= capi::PARAMETERS_BYTES);
     assert!(capi::slung_controller_bytes() <= capi::CONTROLLER_BYTES);
     assert!(capi::slung_route_bytes() <= capi::ROUTE_BYTES);
     assert!(capi::slung_estimator_bytes() <= capi::ESTIMATOR_BYTES);
+    assert!(capi::slung_navigation_bytes() <= capi::NAVIGATION_BYTES);
     assert_eq!(structures.join("\n") + "\n", layout());
 }

@@ -25,7 +25,7 @@ mod random;
 
 pub use drag::Drag;
 pub use model::{Matrix3, OutOfRange, Real, State, Vector3};
-pub use motion::Motion;
+pub use motion::{Motion, attitude_at_rest};
 pub use navigation::{Accepted, Fix, Imu, Navigation, NavigationHealth, NavigationNoise, NavigationParams, Refused};
 pub use payload::{
     Cable, Estimate, Health, LoadMeasurement, Payload, PayloadNoise, PayloadParams, PayloadState, Validity,

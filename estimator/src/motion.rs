@@ -43,3 +43,45 @@ impl<T: Real> Motion<T> {
             && off * off <= T::lit(9e-4)
     }
 }
+
+/// The attitude of a UAV that stands still: down is where the `specific_force` of its accelerometer
+/// is not, and `ahead`, a vector in body axes, has the `heading` ψ from n1 toward n2, rad: b1 and a
+/// receiver's heading, or the magnetic field and its declination. None where these tell nothing:
+/// without a force, or with `ahead` along it.
+pub fn attitude_at_rest<T: Real>(specific_force: &Vector3<T>, ahead: &Vector3<T>, heading: T) -> Option<Matrix3<T>> {
+    let unit = |v: &Vector3<T>| {
+        let length = v.dot(v).sqrt();
+        (length > T::lit(1e-3) && length.is_finite()).then(|| v * (T::one() / length))
+    };
+    let down = unit(&-specific_force)?;
+    let ahead = unit(&(ahead - down * down.dot(ahead)))?;
+    let right = down.cross(&ahead);
+    let (sin, cos) = heading.sin_cos();
+    // Rows of R: n1, n2, n3 in body axes.
+    let (north, east) = (ahead * cos - right * sin, ahead * sin + right * cos);
+    heading.is_finite().then(|| Matrix3::from_rows(&[north.transpose(), east.transpose(), down.transpose()]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_attitude_at_rest_turns_gravity_down_and_the_reference_to_its_heading() {
+        // Pitched by 0.3 about b2, then yawed by 2.0.
+        let (pitch, yaw) = (0.3f64, 2.0f64);
+        let about_b2 = Matrix3::new(pitch.cos(), 0.0, pitch.sin(), 0.0, 1.0, 0.0, -pitch.sin(), 0.0, pitch.cos());
+        let about_n3 = Matrix3::new(yaw.cos(), -yaw.sin(), 0.0, yaw.sin(), yaw.cos(), 0.0, 0.0, 0.0, 1.0);
+        let attitude = about_n3 * about_b2;
+        let force = attitude.transpose() * Vector3::new(0.0, 0.0, -9.81);
+        let found = attitude_at_rest(&force, &Vector3::x(), yaw).unwrap();
+        assert!((found - attitude).amax() < 1e-14, "{found}");
+        // A field that points down, too, and 0.1 east of north.
+        let field = attitude.transpose() * Vector3::new(0.1f64.cos(), 0.1f64.sin(), 1.5);
+        let found = attitude_at_rest(&force, &field, 0.1).unwrap();
+        assert!((found - attitude).amax() < 1e-14, "{found}");
+        assert_eq!(attitude_at_rest(&force, &force, 0.0), None);
+        assert_eq!(attitude_at_rest(&Vector3::zeros(), &Vector3::x(), 0.0), None);
+        assert_eq!(attitude_at_rest(&force, &Vector3::x(), f64::NAN), None);
+    }
+}

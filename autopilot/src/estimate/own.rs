@@ -1,8 +1,8 @@
 //! Navigation of our own: it begins level by the accelerometer, at the first fix, by the magnetic
 //! field or the receiver's heading.
 
-use controller::{Matrix3, Real, Vector3};
-use estimator::{Fix, Imu, Motion, OutOfRange};
+use controller::{Matrix3, Vector3};
+use estimator::{Fix, Imu, Motion, OutOfRange, attitude_at_rest};
 
 use super::{Unseen, params};
 use crate::seen::Navigation;
@@ -113,7 +113,6 @@ impl Own {
 
     /// Down is where the specific force is not, and north where the field is, or the receiver says.
     fn attitude(&self, declination: f32) -> Option<Matrix3<f32>> {
-        let down = unit(&-self.level)?;
         let (ahead, heading) = match (self.field, self.heading) {
             // b1 across the vertical has the receiver's heading.
             (_, Some(heading)) => (Vector3::x(), heading),
@@ -121,17 +120,6 @@ impl Own {
             (Some(field), None) => (field, declination),
             (None, None) => return None,
         };
-        let ahead = unit(&(ahead - down * down.dot(&ahead)))?;
-        let right = down.cross(&ahead);
-        let (sin, cos) = Real::sin_cos(heading);
-        // Rows of R: n1, n2, n3 in body axes.
-        let (north, east) = (ahead * cos - right * sin, ahead * sin + right * cos);
-        Some(Matrix3::from_rows(&[north.transpose(), east.transpose(), down.transpose()]))
+        attitude_at_rest(&self.level, &ahead, heading)
     }
-}
-
-/// The vector's direction, if it has one.
-fn unit(v: &Vector3<f32>) -> Option<Vector3<f32>> {
-    let length = Real::sqrt(v.dot(v));
-    (length > 1e-3 && length.is_finite()).then(|| v * (1.0 / length))
 }
