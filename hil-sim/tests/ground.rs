@@ -331,7 +331,7 @@ fn what_is_asked_for_is_checked() {
 fn a_load_on_a_long_rope_is_set_down_in_its_place_in_gusts() {
     let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
     for (batch, run) in [(1, 219), (2, 634), (2, 922)] {
-        let row = fly_run(&campaign, Seed { batch, run }, Control::alone(), &mut |_| {});
+        let row = fly_run(&campaign, Seed { batch, run }, Control::alone(), None);
         let row = row.unwrap().expect("nobody interrupts it");
         println!("{batch}, {run}: {:?}", row.load_place_m);
         assert_eq!(row.verdict, Verdict::Good, "{row:?}");
@@ -345,7 +345,7 @@ fn the_campaign_from_ground_to_ground_lands_in_its_place() {
     let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
     let rows: Vec<_> = (0..12)
         .map(|run| {
-            let row = fly_run(&campaign, Seed { batch: 3, run }, Control::alone(), &mut |_| {});
+            let row = fly_run(&campaign, Seed { batch: 3, run }, Control::alone(), None);
             row.unwrap().expect("nobody interrupts it")
         })
         .collect();

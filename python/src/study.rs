@@ -100,7 +100,7 @@ impl Campaign {
                         return Ok(None);
                     }
                     let control = Control { stop, progress: &|_| {} };
-                    drawn::fly_run(campaign, Seed { batch: seed, run }, control, &mut |_| {})
+                    drawn::fly_run(campaign, Seed { batch: seed, run }, control, None)
                 });
                 flights.collect()
             })

@@ -228,6 +228,12 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
         &self.time_constants
     }
 
+    /// Distances from the singularities in the last step, if the law flew.
+    #[must_use]
+    pub fn margins(&self) -> Option<&Margins<T>> {
+        either!(&self.law, supervisor => supervisor.answer().map(|answer| &answer.margins))
+    }
+
     /// The compensator's input, m/s⁶, in the last step, if the law flew.
     #[must_use]
     pub fn u_zeta(&self) -> Option<T> {

@@ -319,9 +319,9 @@ fn every_logged_sample_has_its_telemetry() {
             let decisions = there.decision.zip(here.decision);
             assert_eq!(there.decision.is_some(), here.decision.is_some());
             if let Some((there, here)) = decisions {
+                assert_eq!(there.margins, here.margins);
                 let (there, here) = (there.telemetry.unwrap(), here.telemetry.unwrap());
                 assert_eq!((there.xi, there.nu, there.integral), (here.xi, here.nu, here.integral));
-                assert_eq!(there.margins, here.margins);
             }
         }
     }

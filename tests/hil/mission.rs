@@ -117,7 +117,7 @@ pub fn fly_here() -> Flown {
             zeta: [0.0; 4],
             mode: output.mode,
             fault: output.fault,
-            disturbance: None,
+            margins: None,
             telemetry: None,
         }
     })

@@ -72,7 +72,7 @@ impl Answers for Watched {
             self.largest_step = self.largest_step.max(step.min(round - step));
         }
         self.place = (run, parameter);
-        Some(Decision { command, zeta: [0.0; 4], mode, fault, disturbance: None, telemetry: None, body_rate: None })
+        Some(Decision { command, zeta: [0.0; 4], mode, fault, margins: None, telemetry: None, body_rate: None })
     }
 }
 

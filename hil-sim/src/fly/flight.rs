@@ -10,7 +10,7 @@ use super::sight::Sight;
 use super::touchdown::{Touchdown, Watch};
 use crate::describe::scenario::{Requests, Scenario};
 use crate::world::Reading;
-use crate::world::{Body, Seed};
+use crate::world::{Body, Seed, World};
 
 /// A flight this far from its path is lost and ends, m; one that starts further off, at twice its
 /// distance then.
@@ -121,17 +121,30 @@ pub struct Moment<'a> {
     pub is_over: bool,
 }
 
+impl<'a> Moment<'a> {
+    /// Of `world` in `state`, without what is asked for and answered.
+    fn of(step: u64, world: &'a World, state: &'a State<f64>, ground: &'a Watch) -> Self {
+        Self {
+            step,
+            t_s: world.time_s(),
+            state,
+            body: world.body(),
+            touchdown: &ground.touchdown,
+            request: Request::Off,
+            distance_m: None,
+            decision: None,
+            sight: None,
+            is_over: false,
+        }
+    }
+}
+
 /// Control periods between two looks at `stop` and two calls of `progress`.
 const CHECK_PERIODS: u64 = 256;
 
 /// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the
 /// controller takes for one; a vehicle that stands on the ground begins with its rotors off.
-pub fn fly(
-    scenario: &Scenario,
-    plan: &Plan<'_>,
-    pilot: &mut impl Answers,
-    watch: &mut impl FnMut(&Moment<'_>),
-) -> End {
+pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch: &mut dyn FnMut(&Moment<'_>)) -> End {
     let controller = &scenario.controller;
     let told = &controller.vehicle;
     let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
@@ -187,21 +200,8 @@ pub fn fly(
         if let Some(factor) = factor {
             pilot.set_speed_factor(factor);
         }
-        let (body, touchdown) = (*world.body(), ground.touchdown);
-        let seen = Moment {
-            step,
-            t_s,
-            state: &state,
-            body: &body,
-            touchdown: &touchdown,
-            request,
-            distance_m,
-            decision: None,
-            sight: None,
-            is_over: false,
-        };
         if held.as_ref().is_some_and(|held| held.contains(&step)) {
-            watch(&seen);
+            watch(&Moment { request, distance_m, ..Moment::of(step, &world, &state, &ground) });
             world.wait();
             step += 1;
             continue;
@@ -228,7 +228,13 @@ pub fn fly(
             end = End::Unanswered(t_s);
             break;
         };
-        watch(&Moment { decision: Some(&decision), sight: sight.as_ref(), ..seen });
+        watch(&Moment {
+            request,
+            distance_m,
+            decision: Some(&decision),
+            sight: sight.as_ref(),
+            ..Moment::of(step, &world, &state, &ground)
+        });
         if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() {
             end = End::Landed(t_s);
             break;
@@ -248,18 +254,8 @@ pub fn fly(
     // A state beyond all ranges is no number to log or to draw.
     if state.check().is_ok() {
         let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
-        watch(&Moment {
-            step,
-            t_s: world.time_s(),
-            state: &state,
-            body: world.body(),
-            touchdown: &ground.touchdown,
-            request: requests.at(step).0,
-            distance_m,
-            decision: None,
-            sight: None,
-            is_over: true,
-        });
+        let request = requests.at(step).0;
+        watch(&Moment { request, distance_m, is_over: true, ..Moment::of(step, &world, &state, &ground) });
     }
     (plan.control.progress)(scenario.duration_s - told_s);
     end

@@ -52,8 +52,8 @@ pub fn judge(
     seed: Seed,
     ground_p3: Option<f64>,
     control: Control<'_>,
-    pilot: &mut impl Answers,
-    watch: &mut impl FnMut(&Moment<'_>),
+    pilot: &mut dyn Answers,
+    watch: &mut dyn FnMut(&Moment<'_>),
 ) -> Option<Outcome> {
     let distance_every = ((DISTANCE_PERIOD_S * scenario.controller.rate_hz) as u64).max(1);
     let plan = Plan { start, seed, entry: Entry::Hover, ground_p3, distance_every, control };

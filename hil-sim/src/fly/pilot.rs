@@ -1,9 +1,7 @@
 //! The controller as it flies everywhere, behind the face of whatever answers readings, in either
 //! scalar, with its numbers as f64 for recording.
 
-use controller::{
-    Actuation, Command, Disturbance, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3,
-};
+use controller::{Actuation, Command, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3};
 use rig::{Actuators, Parameters, Rig};
 
 use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec};
@@ -38,6 +36,7 @@ pub struct Pilot<T: Real, A = Actuators<T>> {
     joins: bool,
     /// It is above a rate loop.
     gives_rates: bool,
+    has_telemetry: bool,
 }
 
 /// One answer of a pilot.
@@ -53,10 +52,10 @@ pub struct Decision {
     pub mode: Mode,
     /// Why it is not doing what was asked for; none of a target's, whose link counts them.
     pub fault: Option<Fault>,
-    /// What the observers hold; of a target at the other end of a link it does not come.
-    pub disturbance: Option<Disturbance<f64>>,
-    /// The law's own numbers, where it flew; of a target they come with the samples that are
-    /// logged.
+    /// Distances from the singularities, where the law flew; of a target they come with telemetry.
+    pub margins: Option<Margins<f64>>,
+    /// The law's other numbers, where it flew and they are logged; of a target they come with the
+    /// samples that are.
     pub telemetry: Option<Telemetry>,
 }
 
@@ -69,8 +68,6 @@ pub struct Telemetry {
     pub xi: [f64; 20],
     /// Wanted highest derivatives of the outputs.
     pub nu: [f64; 4],
-    /// Distances from the singularities.
-    pub margins: Margins<f64>,
     /// What the observers have found.
     pub observed: Observed,
 }
@@ -141,7 +138,19 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
             Law::Follow { .. } => None,
             Law::Track { reference, .. } => Some(reference),
         };
-        Ok(Self { rig: Box::new(rig), reference, joins: spec.supervised, gives_rates: spec.rate_loop_s.is_some() })
+        Ok(Self {
+            rig: Box::new(rig),
+            reference,
+            joins: spec.supervised,
+            gives_rates: spec.rate_loop_s.is_some(),
+            has_telemetry: true,
+        })
+    }
+
+    /// The same where nobody logs its telemetry, which it then does not make.
+    #[must_use]
+    pub fn without_telemetry(self) -> Self {
+        Self { has_telemetry: false, ..self }
     }
 
     /// What turns its commands into thrust and torque.
@@ -159,33 +168,35 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
         let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
         let body_rate = measured.body_rate();
-        let (zeta, integral) = (*self.rig.zeta(), self.rig.integral());
+        // Both are those at the sample.
+        let zeta = *self.rig.zeta();
+        let integral = self.has_telemetry.then(|| self.rig.integral());
         let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);
-        let telemetry = self.rig.numbers().map(|numbers| {
-            let found = self.rig.telemetry(&state);
-            let rig::LawNumbers { xi, nu, margins, .. } = numbers;
-            Telemetry {
-                integral: integral.map(T::cast),
-                xi: xi.map(T::cast),
-                nu: nu.map(T::cast),
-                margins: margins.cast(),
-                observed: Observed {
-                    payload_force: found.payload_force.map(T::cast),
-                    uav_force: found.uav_force.map(T::cast),
-                    torque: found.torque.map(T::cast),
-                    payload_mass: found.payload_mass.cast(),
-                },
-            }
-        });
         Decision {
             command: command.cast(),
             body_rate: self.gives_rates.then(|| self.rig.rate_setpoint(body_rate).body_rate.map(T::cast)),
             zeta: zeta.map(T::cast),
             mode,
             fault,
-            disturbance: Some(self.rig.disturbance().cast()),
-            telemetry,
+            margins: self.rig.margins().map(Margins::cast),
+            telemetry: integral.and_then(|integral| self.telemetry(integral, &state)),
         }
+    }
+
+    /// The last step's, on `state`, with ξ̃ as it was before.
+    fn telemetry(&self, integral: [T; 3], state: &State<T>) -> Option<Telemetry> {
+        let rig::Telemetry { law, payload_force, uav_force, torque, payload_mass } = self.rig.telemetry(state);
+        law.map(|rig::LawNumbers { xi, nu, .. }| Telemetry {
+            integral: integral.map(T::cast),
+            xi: xi.map(T::cast),
+            nu: nu.map(T::cast),
+            observed: Observed {
+                payload_force: payload_force.map(T::cast),
+                uav_force: uav_force.map(T::cast),
+                torque: torque.map(T::cast),
+                payload_mass: payload_mass.cast(),
+            },
+        })
     }
 }
 

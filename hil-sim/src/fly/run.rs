@@ -72,7 +72,7 @@ pub fn fly_simply(scenario: &Scenario, arithmetic: Arithmetic) -> Result<Flight,
 /// [`Invalid`] if the twin cannot be made.
 pub fn fly_on(
     scenario: &Scenario,
-    pilot: &mut impl Answers,
+    pilot: &mut dyn Answers,
     twin: bool,
     control: Control<'_>,
 ) -> Result<Flight, Invalid> {
@@ -85,7 +85,7 @@ pub fn fly_on(
 /// As [`fly_on`].
 pub fn fly_watched(
     scenario: &Scenario,
-    pilot: &mut impl Answers,
+    pilot: &mut dyn Answers,
     twin: bool,
     control: Control<'_>,
     see: &mut dyn FnMut(&[Sample]),

@@ -3,7 +3,7 @@
 use controller::{Mode, Request, Vector3};
 use serde::{Deserialize, Serialize};
 
-use crate::world::{Bodies, Body, Ground};
+use crate::world::{Body, Ground};
 
 /// Time over which the payload's place is averaged until a landing is asked for, s: about a swing.
 const AVERAGED_S: f64 = 2.0;
@@ -79,7 +79,7 @@ impl Watch {
     /// Notes what is asked for and what the vehicle does; `true` once it has flown, its rotors are
     /// off, and both bodies stand.
     pub(super) fn has_landed(&mut self, body: &Body, request: Request, mode: Mode) -> bool {
-        let Bodies { position, velocity, uav_velocity, .. } = body.bodies();
+        let position = body.position();
         let mean = self.mean.get_or_insert(position);
         *mean += (position - *mean) * (self.period / AVERAGED_S);
         if request == Request::Land {
@@ -93,8 +93,8 @@ impl Watch {
         let stands = self.has_flown
             && mode == Mode::Off
             && body.touching() == [true; 2]
-            && is_still(&velocity)
-            && is_still(&uav_velocity);
+            && is_still(&body.bodies().velocity)
+            && is_still(&body.uav_velocity());
         self.standing_s = if stands { self.standing_s + self.period } else { 0.0 };
         self.standing_s > STANDING_S
     }

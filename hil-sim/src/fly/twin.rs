@@ -25,17 +25,17 @@ enum Asked {
 const BLOCK: usize = 256;
 
 /// A pilot with its twin.
-pub struct Twinned<'a, A> {
-    pilot: &'a mut A,
+pub struct Twinned<'a> {
+    pilot: &'a mut dyn Answers,
     twin: Option<Pilot<f64>>,
     asked: Vec<Asked>,
     deviations: Deviations,
     cpu: Duration,
 }
 
-impl<'a, A: Answers> Twinned<'a, A> {
+impl<'a> Twinned<'a> {
     /// `pilot`, which flies what `spec` describes, with its `twin`, if it is to have one.
-    pub fn new(pilot: &'a mut A, twin: Option<Pilot<f64>>, spec: &ControllerSpec) -> Self {
+    pub fn new(pilot: &'a mut dyn Answers, twin: Option<Pilot<f64>>, spec: &ControllerSpec) -> Self {
         Self { pilot, twin, asked: Vec::new(), deviations: Deviations::new(spec), cpu: Duration::ZERO }
     }
 
@@ -72,7 +72,7 @@ impl<'a, A: Answers> Twinned<'a, A> {
     }
 }
 
-impl<A: Answers> Answers for Twinned<'_, A> {
+impl Answers for Twinned<'_> {
     fn start(&mut self, state: &State<f64>, zeta: [f64; 4]) {
         self.pilot.start(state, zeta);
         self.ask(Asked::Start(*state, zeta));

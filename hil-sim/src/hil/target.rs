@@ -391,19 +391,19 @@ impl Target {
         self.line.statistics.cycles.push(command.cycles);
         // The answer has ζ at the hold's end; a decision has it at its start.
         let zeta = std::mem::replace(&mut self.zeta, command.zeta.map(f64::from));
+        let margins = telemetry.map(|data| Margins {
+            q3: data.q3.into(),
+            q_b3: data.q_b3.into(),
+            lambda: data.specific_force.into(),
+            kappa: data.kappa.into(),
+            path_det: data.path_det.into(),
+            reach: data.reach.into(),
+            cos_phi_squared: data.cos_phi_squared.into(),
+        });
         let telemetry = telemetry.map(|data| Telemetry {
             integral: data.integral.map(f64::from),
             xi: data.xi.map(f64::from),
             nu: data.nu.map(f64::from),
-            margins: Margins {
-                q3: data.q3.into(),
-                q_b3: data.q_b3.into(),
-                lambda: data.specific_force.into(),
-                kappa: data.kappa.into(),
-                path_det: data.path_det.into(),
-                reach: data.reach.into(),
-                cos_phi_squared: data.cos_phi_squared.into(),
-            },
             observed: Observed {
                 payload_force: data.payload_force.map(f64::from),
                 uav_force: data.uav_force.map(f64::from),
@@ -417,7 +417,7 @@ impl Target {
             zeta,
             mode: mode(command.mode),
             fault: None,
-            disturbance: None,
+            margins,
             telemetry,
         })
     }
@@ -431,7 +431,7 @@ fn down() -> Decision {
         zeta: [0.0; 4],
         mode: Mode::Off,
         fault: None,
-        disturbance: None,
+        margins: None,
         telemetry: None,
     }
 }

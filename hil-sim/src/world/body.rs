@@ -146,6 +146,15 @@ impl Body {
         }
     }
 
+    /// Position of the payload in N, m.
+    #[must_use]
+    pub fn position(&self) -> Vector3<f64> {
+        match self {
+            Self::Rod(body) => body.position(),
+            Self::Cable(body) => body.bodies().position,
+        }
+    }
+
     /// Position of the UAV in N, m.
     #[must_use]
     pub fn uav_position(&self) -> Vector3<f64> {

@@ -107,6 +107,12 @@ impl Multibody {
         }
     }
 
+    /// Position of the payload in N, m.
+    #[must_use]
+    pub fn position(&self) -> Vector3<f64> {
+        vector(&self.x, 0)
+    }
+
     /// Velocity of the UAV in N, m/s: v − L q̇.
     #[must_use]
     pub fn uav_velocity(&self) -> Vector3<f64> {

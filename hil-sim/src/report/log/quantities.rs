@@ -3,7 +3,6 @@
 
 use super::record::Record;
 use crate::fly::fault::describe;
-use crate::fly::pilot::Telemetry;
 use crate::fly::sample::Contact;
 use controller::{Matrix3, Vector3};
 
@@ -220,25 +219,25 @@ pub const QUANTITIES: &[Quantity] = &[
         topic: "margins",
         columns: &[("q3", "1"), ("q_b3", "1")],
         about: "q·e3 (rod against the vertical) and q·b3 (thrust against the rod); 0 is singular",
-        values: |r| r.law().map(|Telemetry { margins: m, .. }| [m.q3, m.q_b3, 0.0, 0.0]),
+        values: |r| r.margins().map(|margins| [margins.q3, margins.q_b3, 0.0, 0.0]),
     },
     Quantity {
         topic: "margins",
         columns: &[("lambda", "m/s^2")],
         about: "Specific force on the payload along the rod; −g hanging at rest, 0 in free fall",
-        values: |r| r.law().and_then(|law| number(law.margins.lambda)),
+        values: |r| r.margins().and_then(|margins| number(margins.lambda)),
     },
     Quantity {
         topic: "margins",
         columns: &[("kappa", "1/s^2")],
         about: "T/(m_Q L); 0 without thrust",
-        values: |r| r.law().and_then(|law| number(law.margins.kappa)),
+        values: |r| r.margins().and_then(|margins| number(margins.kappa)),
     },
     Quantity {
         topic: "margins",
         columns: &[("path_det", "h1 h2/m^2"), ("reach", "1"), ("cos_phi_squared", "1")],
         about: "Regularity of the path's functions, what is left of its reach, and cos²φ; 0 is singular",
-        values: |r| r.law().and_then(|Telemetry { margins: m, .. }| array([m.path_det, m.reach, m.cos_phi_squared])),
+        values: |r| r.margins().and_then(|m| array([m.path_det, m.reach, m.cos_phi_squared])),
     },
     Quantity {
         topic: "observers",

@@ -1,6 +1,6 @@
 //! What is logged of one instant. The only place that knows how a flight keeps its samples.
 
-use controller::{Command, State, Vector3};
+use controller::{Command, Margins, State, Vector3};
 
 use crate::describe::scenario::{Law, Scenario};
 use crate::fly::batch::Outcome;
@@ -91,6 +91,12 @@ impl Record {
             contact: Contact::of(moment.body),
             ..Self::new(scenario, moment.t_s, *moment.state, uav, moment.distance_m, moment.decision.copied())
         }
+    }
+
+    /// How far the law was from its singularities.
+    #[must_use]
+    pub fn margins(&self) -> Option<Margins<f64>> {
+        self.decision.and_then(|decision| decision.margins)
     }
 
     /// Where the law's answer came from.

@@ -11,7 +11,7 @@ use crate::describe::scenario::ControllerSpec;
 use crate::fly::fault::describe;
 use crate::fly::flight::{Control, End, LOST_M, Moment};
 use crate::fly::judge::{GOOD_M, Outcome, judge};
-use crate::fly::pilot::{Decision, Pilot, Telemetry};
+use crate::fly::pilot::{Decision, Pilot};
 use crate::world::Seed;
 
 /// The controller of a campaign: `spec`'s under its supervisor in f32, joining its path within
@@ -129,7 +129,8 @@ const IN_PLACE_M: f64 = 0.5;
 /// Instants at which a row has d_C.
 pub const INSTANTS: usize = 16;
 
-/// Flies one flight of a campaign; `watch` sees every period. `None` if it was interrupted.
+/// Flies one flight of a campaign; `watch`, if there is one, sees every period with its telemetry.
+/// `None` if it was interrupted.
 ///
 /// # Errors
 /// [`Invalid`] if the drawn scenario is not valid or cannot be set up.
@@ -137,18 +138,21 @@ pub fn fly_run(
     campaign: &Campaign,
     seed: Seed,
     control: Control<'_>,
-    watch: &mut dyn FnMut(&Moment<'_>),
+    watch: Option<&mut dyn FnMut(&Moment<'_>)>,
 ) -> Result<Option<Row>, Invalid> {
     let drawn = campaign.draw(seed)?;
-    let mut pilot = pilot(&drawn.scenario.controller, &campaign.approach)?;
-    Ok(fly_drawn(&drawn, &mut pilot, campaign.ground_p3, seed, control, watch))
+    let pilot = pilot(&drawn.scenario.controller, &campaign.approach)?;
+    Ok(match watch {
+        Some(watch) => fly_drawn(&drawn, pilot, campaign.ground_p3, seed, control, watch),
+        None => fly_drawn(&drawn, pilot.without_telemetry(), campaign.ground_p3, seed, control, &mut |_| {}),
+    })
 }
 
 /// Flies a flight that has been drawn, with everything else random from `seed`; `None` if it was
 /// interrupted.
 pub(super) fn fly_drawn(
     Drawn { scenario, start }: &Drawn,
-    pilot: &mut Pilot<f32>,
+    mut pilot: Pilot<f32>,
     ground_p3: Option<f64>,
     seed: Seed,
     control: Control<'_>,
@@ -173,9 +177,9 @@ pub(super) fn fly_drawn(
     };
     let mut over_time: Vec<f64> = Vec::with_capacity(INSTANTS);
     let (mut mode, mut fault, mut flying) = (Mode::Off, None, false);
-    let outcome = judge(scenario, start.state, seed, ground_p3, control, pilot, &mut |moment| {
+    let outcome = judge(scenario, start.state, seed, ground_p3, control, &mut pilot, &mut |moment| {
         let Some(decision) = moment.decision else { return };
-        let Decision { command, telemetry, .. } = decision;
+        let Decision { command, margins, .. } = decision;
         mode = decision.mode;
         if let Some(now) = decision.fault
             && fault != Some(now)
@@ -194,7 +198,7 @@ pub(super) fn fly_drawn(
             Mode::Follow => row.follow_s += period,
             _ => {}
         }
-        if let Some(Telemetry { margins, .. }) = telemetry {
+        if let Some(margins) = margins {
             row.least_q3 = row.least_q3.min(margins.q3);
             row.least_q_b3 = row.least_q_b3.min(margins.q_b3);
             row.least_tension = row.least_tension.min(-margins.lambda * controller.vehicle.payload_mass);

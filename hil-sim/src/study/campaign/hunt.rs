@@ -146,9 +146,9 @@ fn fly(campaign: &Campaign, draws: &Draws, seed: Seed, control: Control<'_>) -> 
     let scenario = campaign.scenario(table.clone())?;
     // As the file says it, to the last bit.
     let start = Start { state: State::from_paper(&scenario.initial), ..start };
-    let mut pilot = pilot(&scenario.controller, &ApproachFields::default())?;
+    let pilot = pilot(&scenario.controller, &ApproachFields::default())?.without_telemetry();
     let ground_p3 = scenario.ground_p3;
-    let row = fly_drawn(&Drawn { scenario, start }, &mut pilot, ground_p3, seed, control, &mut |_| {});
+    let row = fly_drawn(&Drawn { scenario, start }, pilot, ground_p3, seed, control, &mut |_| {});
     row.map(|row| (table, row)).ok_or(HuntError::Interrupted)
 }
 

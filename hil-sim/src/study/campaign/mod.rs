@@ -87,7 +87,7 @@ pub fn run(
                 break;
             }
             let control = Control { stop, progress: &|_| {} };
-            match fly_run(campaign, Seed { batch: identity.seed, run }, control, &mut |_| {}) {
+            match fly_run(campaign, Seed { batch: identity.seed, run }, control, None) {
                 Ok(Some(row)) => {
                     progress(1);
                     locked().take(index, row);

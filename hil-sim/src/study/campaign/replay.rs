@@ -3,7 +3,7 @@
 use super::file::Campaign;
 use super::fly::{Row, Verdict, fly_run};
 use crate::describe::input::Invalid;
-use crate::fly::flight::{Control, End};
+use crate::fly::flight::{Control, End, Moment};
 use crate::report::log::{Record, Table};
 use crate::report::page::{Shown, flights_page};
 use crate::world::Seed;
@@ -26,7 +26,8 @@ pub struct Replay {
 pub fn replay(campaign: &Campaign, seed: Seed, control: Control<'_>) -> Result<Option<Replay>, Invalid> {
     let scenario = campaign.draw(seed)?.scenario;
     let mut records = Vec::new();
-    let row = fly_run(campaign, seed, control, &mut |moment| records.push(Record::of_moment(&scenario, moment)))?;
+    let mut watch = |moment: &Moment<'_>| records.push(Record::of_moment(&scenario, moment));
+    let row = fly_run(campaign, seed, control, Some(&mut watch))?;
     Ok(row.map(|row| {
         let log = Table::new(&format!("replay-{}", seed.run), &campaign.title, &records);
         let end = match row.verdict {

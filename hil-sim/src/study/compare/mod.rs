@@ -151,7 +151,8 @@ fn fly_one(scenario: &Scenario, case: &Case, seed: Seed, control: Control<'_>) -
     let mut trace = Vec::new();
     let points = (scenario.duration_s / TRACE_PERIOD_S) as usize;
     // The numbers of the comparison are constants that f32 holds, as the tests show.
-    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
+    let pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
+    let mut pilot = pilot.without_telemetry();
     let outcome = judge(&scenario, start, seed, None, control, &mut pilot, &mut |moment| {
         if let Some(distance) = moment.distance_m
             && moment.t_s >= TRACE_PERIOD_S * trace.len() as f64 - 1e-9
@@ -266,14 +267,13 @@ mod tests {
         let mut scenario = contend(&base().expect("the file is valid"), Contender::Observer, BANDWIDTH);
         scenario.environment.payload_force = [0.6, 0.8, 0.0];
         let start = State::from_paper(&scenario.initial);
-        let told = controller::Vehicle::new(scenario.controller.vehicle).expect("Table I");
         let mut missed_n = 0.0_f64;
         let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it can be set up");
         let outcome = judge(&scenario, start, Seed::default(), None, Control::alone(), &mut pilot, &mut |moment| {
-            let Some(found) = moment.decision.and_then(|decision| decision.disturbance) else { return };
-            let found = found.payload_force(&told, &moment.state.rod);
+            let Some(telemetry) = moment.decision.and_then(|decision| decision.telemetry) else { return };
+            let [x, y, _] = telemetry.observed.payload_force;
             if moment.t_s >= 3.0 {
-                missed_n = missed_n.max((found.x - 0.6).hypot(found.y - 0.8));
+                missed_n = missed_n.max((x - 0.6).hypot(y - 0.8));
             }
         })
         .expect("nobody interrupts it");

@@ -180,7 +180,8 @@ fn measure(scenario: &Scenario, trial: &Trial, seed: Seed, control: Control<'_>)
     let [radius, p3, _] = scenario.controller.law.circle().unwrap_or([5.0, -10.0, 1.0]);
     let start = start(radius, p3, &mut random);
     (trial.prepare)(&mut scenario, &mut random);
-    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
+    let pilot = Pilot::<f32>::new(&scenario.controller).expect("the comparison's scenarios can be set up");
+    let mut pilot = pilot.without_telemetry();
     let hover = scenario.vehicle.total_mass() * scenario.vehicle.gravity;
     let period = 1.0 / scenario.controller.rate_hz;
     let release_s = scenario.obstacle.map_or(f64::INFINITY, |obstacle| obstacle.at_s + obstacle.hold_s);

@@ -99,7 +99,8 @@ fn fly_one(base: &Scenario, case: &Case, seed: Seed, control: Control<'_>) -> Re
     }
     let scenario = case.scenario(base, &mut random)?;
     let mut pilot = campaign::pilot(&scenario.controller, &ApproachFields::default())
-        .expect("the table's scenarios can be set up, as a test shows");
+        .expect("the table's scenarios can be set up, as a test shows")
+        .without_telemetry();
     let mut errors = Errors::new(&scenario);
     let outcome = judge(&scenario, start, seed, None, control, &mut pilot, &mut |moment| errors.push(moment));
     Ok(outcome.map(|outcome| Flown { outcome, errors }))

@@ -26,7 +26,7 @@ use crate::describe::input::Invalid;
 use crate::describe::scenario::{Law, Scenario};
 use crate::fly::flight::Control;
 use crate::fly::judge::{JUDGED, judge};
-use crate::fly::pilot::{Pilot, Telemetry};
+use crate::fly::pilot::Pilot;
 use crate::study::compare::{percentile, start};
 use crate::world::Seed;
 use crate::world::random::Purpose;
@@ -190,7 +190,7 @@ fn fly_one(
     let judged_from_s = (1.0 - JUDGED) * scenario.duration_s;
     let (mut squares, mut count, mut torque_max) = (0.0, 0_u32, 0.0_f64);
     let (mut q3, mut q_b3) = (1.0_f64, 1.0_f64);
-    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it was set up before");
+    let mut pilot = Pilot::<f32>::new(&scenario.controller).expect("it was set up before").without_telemetry();
     let outcome = judge(scenario, start, seed, None, control, &mut pilot, &mut |moment| {
         let Some(decision) = moment.decision else { return };
         let torque = &decision.command.torque;
@@ -200,7 +200,7 @@ fn fly_one(
             squares += square;
             count += 1;
         }
-        if let Some(Telemetry { margins, .. }) = &decision.telemetry {
+        if let Some(margins) = &decision.margins {
             (q3, q_b3) = (q3.min(margins.q3), q_b3.min(margins.q_b3));
         }
     })?;
