@@ -18,6 +18,7 @@ mod pendulum;
 mod predict;
 mod state;
 mod thrust;
+mod track;
 
 pub use health::{Cable, Health, Validity};
 pub use load::LoadMeasurement;
@@ -36,6 +37,7 @@ use pendulum::{Pendulum, Pivot, Pull};
 use predict::{Covariance, Spread};
 use state::{ERRORS, index};
 use thrust::{Axis, Linearized, Mean, Window};
+use track::Track;
 
 /// Periods of a cycle.
 const CYCLE: u8 = 30;
@@ -119,6 +121,7 @@ pub struct Payload<T> {
     taken: [Innovations<T>; 2],
     last: Motion<T>,
     glide: Glide<T>,
+    track: Track<T>,
     pull: Pull<T>,
     /// Periods without an input in a row, and since the covariance has moved.
     missing: u16,
@@ -160,6 +163,7 @@ impl<T: Real> Payload<T> {
             taken: [Innovations::none(); 2],
             last: Motion::at_rest(Vector3::zeros(), params.gravity),
             glide: Glide::none(),
+            track: Track::none(),
             pull: Pull { u: Vector3::zeros(), tension: params.gravity, acceleration: Vector3::zeros() },
             // Nothing has been seen yet.
             missing: 1,
@@ -239,6 +243,8 @@ impl<T: Real> Payload<T> {
                 // Where the hook was then.
                 let hook = self.last.position + self.last.attitude * self.params.hook - hook_velocity * age;
                 let rod = (place - hook) * per_length;
+                let motion = [*place, hook_velocity + rod_rate * self.params.cable_length];
+                self.track.take(place, [deviation, age, self.params.noise.accelerometer], &motion);
                 rods.add_rod([rod.x, rod.y], deviation * per_length, ages, &now);
             }
             LoadMeasurement::Velocity(velocity, _) => {
@@ -291,6 +297,9 @@ impl<T: Real> Payload<T> {
         } else {
             pendulum.pull(params, &pivot, &self.state.rod, &self.state.rod_rate)
         };
+        let mut falling = self.state.rod * -self.pull.tension;
+        falling.z += params.gravity;
+        self.track.pass(&falling, params.period);
         // No rotors give more than ten times what the vehicle weighs.
         let most = (params.uav_mass + params.payload_mass) * params.gravity * T::lit(10.0);
         let thrust = thrust.filter(|&thrust| thrust >= T::zero() && thrust <= most);
@@ -489,7 +498,7 @@ impl<T: Real> Payload<T> {
         let rod = line * per_length;
         let state = State {
             position: position + line + self.glide.rest,
-            velocity: load_velocity + self.glide.rate,
+            velocity: self.track.velocity().unwrap_or(&load_velocity) + self.glide.rate,
             rod,
             rod_rate: (closing - rod * rod.dot(&closing)) * per_length,
             attitude: *attitude,
