@@ -33,6 +33,10 @@ impl<A: Answers> Answers for Recorded<A> {
         self.inner.take_over(state, applied);
     }
 
+    fn lands(&self) -> bool {
+        self.inner.lands()
+    }
+
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
         let decision = self.inner.step(read, request, t_s)?;
         let Decision { command, zeta, .. } = decision;

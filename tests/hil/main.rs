@@ -4,6 +4,7 @@
 
 mod common;
 mod mission;
+mod route;
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
@@ -44,6 +45,15 @@ fn a_mission_from_ground_to_ground_is_the_same_over_the_link() {
     target.prepare(&mission::scenario()).unwrap();
     let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
     assert_eq!(there, here);
+}
+
+#[test]
+fn a_route_is_uploaded_and_flown_to_its_end() {
+    let (_, here, _) = route::flown(Pilot::<f32>::new(&route::scenario().controller).unwrap());
+    let (_, there, _) = route::flown_there(soft_target(OPTIONS, |stream| stream).unwrap());
+    // Places of items are rounded to 0.1 mm; a sample every 10 ms is off by 7.5 mm along the route,
+    // which is 0.3 mm of the distance from a point 0.1 m beside it.
+    assert!((here - there).abs() < 1e-3, "passes at {there} m, not at {here} m");
 }
 
 #[test]

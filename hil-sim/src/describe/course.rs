@@ -7,7 +7,7 @@ use serde::de::Deserializer;
 use std::f64::consts::TAU;
 
 use crate::describe::input::{Invalid, join, read, within};
-pub use crate::describe::path::{FlownPath, PathSpec, parse_path};
+pub use crate::describe::path::{FlownPath, PathSpec, RouteSpec, parse_path};
 use witness::plant::distance_to_circle;
 
 /// Largest speed of a reference, m/s.

@@ -422,9 +422,9 @@ pub const SECTIONS: &[Section] = &[
             key(
                 "end",
                 "",
-                Other("\"hover\", { back = times }, { again = times }"),
+                Other("\"hover\", \"land\", { back = times }, { again = times }"),
                 "\"hover\"",
-                "What is flown after the last waypoint: nothing, the way back and forth, or the same once more.",
+                "What is done after the last waypoint: stay there, land there, fly the way back and forth, or the same again.",
             ),
         ],
     },

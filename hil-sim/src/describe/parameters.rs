@@ -2,7 +2,7 @@
 //! in C the same.
 
 use controller::{ActuatorLimits, Gains, ObserverParams, Sampling, TrackGains, VehicleParams};
-use rig::{HARMONICS, Parameter, Parameters, Refused, Run, Shape, parameter, run};
+use rig::{HARMONICS, Parameter, Parameters, ROUTE, Refused, Run, Shape, parameter, run};
 
 use crate::describe::input::{Invalid, join};
 use crate::describe::path::{CurveSpec, PathKind, PathSpec, SpeedSpec, YawSpec};
@@ -97,9 +97,8 @@ fn set_path(path: &PathSpec, all: &mut Parameters<f64>) -> Result<(), Unsupporte
     let formula = |what: &str| Err(Unsupported(format!("{what} by formula is for simulation only")));
     let path = match &path.kind {
         PathKind::Profiled(path) => path,
-        PathKind::Route(_) => {
-            return Err(Unsupported("a route is for simulation only: the target takes no table".into()));
-        }
+        // Its points are no parameters: they come as a mission.
+        PathKind::Route(_) => return one(all, parameter!("PATH_KIND"), f64::from(ROUTE)),
     };
     match &path.curve {
         CurveSpec::Numbers(described) => {

@@ -197,6 +197,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             break;
         }
         let (request, factor) = requests.at(step);
+        let request = if request == Request::Follow && pilot.lands() { Request::Land } else { request };
         if let Some(factor) = factor {
             pilot.set_speed_factor(factor);
         }

@@ -4,7 +4,7 @@
 use controller::{Actuation, Command, Fault, Margins, Measured, Mode, Real, Request, State, Uav, Vector3};
 use rig::{Actuators, Parameters, Rig};
 
-use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec};
+use crate::describe::course::{FlownPath, PathSpec, ReferenceSpec, RouteSpec};
 use crate::describe::input::Invalid;
 use crate::describe::parameters::without_path;
 use crate::describe::scenario::{ControllerSpec, Law};
@@ -22,6 +22,11 @@ pub trait Answers {
     /// Wishes for another factor of the path's speed, where that can be had.
     fn set_speed_factor(&mut self, _factor: f64) {}
 
+    /// Whether its route has ended where it is to land, so that it lands whatever it was asked for.
+    fn lands(&self) -> bool {
+        false
+    }
+
     /// The command for the hold that begins at `t_s`, from what is read then and what is asked for;
     /// `None` if there will be no more.
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision>;
@@ -37,6 +42,12 @@ pub struct Pilot<T: Real, A = Actuators<T>> {
     /// It is above a rate loop.
     gives_rates: bool,
     has_telemetry: bool,
+    /// At the route's end it lands.
+    lands_at_end: bool,
+    /// Since when the payload rests there, s.
+    ended_s: Option<f64>,
+    /// Longer than it is to rest there.
+    lands: bool,
 }
 
 /// One answer of a pilot.
@@ -144,7 +155,22 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
             joins: spec.supervised,
             gives_rates: spec.rate_loop_s.is_some(),
             has_telemetry: true,
+            lands_at_end: spec.law.route().is_some_and(RouteSpec::lands),
+            ended_s: None,
+            lands: false,
         })
+    }
+
+    /// Whether the payload has rested at its route's end, as a mission's does, at `t_s`.
+    fn has_ended(&mut self, t_s: f64) -> bool {
+        let Some(law) = self.rig.following().filter(|_| self.rig.mode() == Mode::Follow) else { return false };
+        let FlownPath::Route(route) = law.path() else { return false };
+        if !(law.rests() && route.is_last_run()) {
+            self.ended_s = None;
+            return false;
+        }
+        let dwell = controller::Path::dwell(route).map_or(f64::INFINITY, T::to_f64);
+        t_s - *self.ended_s.get_or_insert(t_s) > dwell
     }
 
     /// The same where nobody logs its telemetry, which it then does not make.
@@ -216,8 +242,14 @@ impl<T: Real, A: Actuation<T>> Answers for Pilot<T, A> {
         self.rig.set_speed_factor(T::lit(factor));
     }
 
+    fn lands(&self) -> bool {
+        self.lands
+    }
+
     #[inline]
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
-        Some(self.decide(read, request, t_s))
+        let decision = self.decide(read, request, t_s);
+        self.lands = self.lands || self.lands_at_end && self.has_ended(t_s);
+        Some(decision)
     }
 }

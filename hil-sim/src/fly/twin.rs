@@ -88,6 +88,10 @@ impl Answers for Twinned<'_> {
         self.ask(Asked::SpeedFactor(factor));
     }
 
+    fn lands(&self) -> bool {
+        self.pilot.lands()
+    }
+
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
         let decision = self.pilot.step(read, request, t_s)?;
         self.ask(Asked::Step(*read, request, t_s, decision));

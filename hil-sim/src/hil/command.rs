@@ -7,7 +7,7 @@ use clap::Args;
 use comfy_table::Table;
 use serde::Serialize;
 
-use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target};
+use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target, mission};
 use crate::describe::parameters::{Unsupported, parameters};
 use crate::describe::scenario::Scenario;
 use crate::fly::batch::Outcome;
@@ -150,7 +150,11 @@ pub fn fly_all(
         if scenario.requests.iter().any(|asked| asked.speed_factor.is_some()) {
             return Err(unsupported("factors of the speed are for flights in this program".to_owned()));
         }
-        parameters(&scenario.controller).map_err(|Unsupported(reason)| unsupported(reason))?;
+        let refused = |Unsupported(reason)| unsupported(reason);
+        parameters(&scenario.controller).map_err(refused)?;
+        if let Some(route) = scenario.controller.law.route() {
+            mission::items(route).map_err(refused)?;
+        }
     }
     let mut target = match (&arguments.place.port, &arguments.place.connect, &arguments.place.emulate) {
         (Some(port), ..) => {

@@ -14,6 +14,7 @@ mod datagrams;
 mod emulator;
 mod error;
 mod line;
+mod mission;
 mod options;
 mod soft;
 mod statistics;

@@ -9,7 +9,7 @@ use link::dialect::*;
 use rig::{Refused, parameter, run};
 
 use super::line::Line;
-use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire};
+use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire, mission};
 use crate::describe::parameters::parameters;
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
@@ -36,6 +36,8 @@ pub struct Target {
     request: Request,
     /// It has landed, and is disarmed.
     is_down: bool,
+    /// Its mission has ended, and it lands unasked.
+    lands: bool,
     reference_rate: f64,
     /// Largest thrust, and largest torques.
     limits: (f32, [f32; 3]),
@@ -83,6 +85,7 @@ impl Target {
             begin: Begin::Begun,
             request: Request::Idle,
             is_down: false,
+            lands: false,
             reference_rate: 0.0,
             limits: (0.0, [0.0; 3]),
             zeta: [0.0; 4],
@@ -156,12 +159,18 @@ impl Target {
         // With the states that ask for it.
         settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
         self.arm(false)?;
-        self.configure(&settings)?;
+        if let Some(route) = law.route() {
+            mission::set_pace(route, &mut settings).map_err(unsupported)?;
+            self.configure(&settings)?;
+            self.upload(&mission::items(route)?)?;
+        } else {
+            self.configure(&settings)?;
+        }
         self.arm(true)?;
         (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
         let begin = if scenario.standing { Begin::Standing } else { Begin::Begun };
         (self.zeta, self.begin, self.command) = ([0.0; 4], begin, None);
-        (self.request, self.is_down) = (Request::Idle, false);
+        (self.request, self.is_down, self.lands) = (Request::Idle, false, false);
         self.epoch = Instant::now();
         Ok(())
     }
@@ -183,6 +192,7 @@ impl Target {
             Pace::RealTime => self.real_time(measured, t_s),
         }?;
         self.is_down = decision.mode == Mode::Off;
+        self.lands |= decision.mode == Mode::Land && request == Request::Follow;
         Ok(decision)
     }
 
@@ -247,6 +257,42 @@ impl Target {
             }
         }
         Ok(())
+    }
+
+    /// Has the target keep `items` as its mission, in place of what it has.
+    fn upload(&mut self, items: &[MISSION_ITEM_INT_DATA]) -> Result<(), HilError> {
+        // What the target wants next: an item, or nothing more.
+        let wanted = |message: &MavMessage, next: u16| match message {
+            MavMessage::MISSION_REQUEST_INT(request) if request.seq == next => Some(None),
+            MavMessage::MISSION_ACK(ack) => Some(Some(ack.mavtype)),
+            _ => None,
+        };
+        let (target_system, target_component) = link::CONTROLLER;
+        let count = items.len() as u16;
+        let mut question = MavMessage::MISSION_COUNT(MISSION_COUNT_DATA {
+            count,
+            target_system,
+            target_component,
+            ..MISSION_COUNT_DATA::DEFAULT
+        });
+        for (next, item) in (0..).zip(items) {
+            if let Some(result) = self.line.ask(&question, |message| wanted(message, next))? {
+                return self.kept(result);
+            }
+            question = MavMessage::MISSION_ITEM_INT(item.clone());
+        }
+        match self.line.ask(&question, |message| wanted(message, count))? {
+            Some(result) => self.kept(result),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether a mission was taken.
+    fn kept(&self, result: u8) -> Result<(), HilError> {
+        if result == MavMissionResult::MAV_MISSION_ACCEPTED as u8 {
+            return Ok(());
+        }
+        Err(HilError::Refused(self.line.statistics.texts.last().cloned().unwrap_or_default()))
     }
 
     fn arm(&mut self, on: bool) -> Result<(), HilError> {
@@ -443,6 +489,10 @@ impl Answers for Target {
 
     fn take_over(&mut self, _: &State<f64>, _: &Command<f64>) {
         self.begin = Begin::On([0.0; 4]);
+    }
+
+    fn lands(&self) -> bool {
+        self.lands
     }
 
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {

@@ -30,6 +30,9 @@ pub struct RouteSpec {
     waypoints: Vec<Waypoint<f64>>,
     is_closed: bool,
     end: End,
+    lands: bool,
+    acceleration: f64,
+    is_pointing: bool,
     table: SharedTable<f64>,
 }
 
@@ -44,6 +47,30 @@ impl RouteSpec {
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.is_closed
+    }
+
+    /// What is flown after the last waypoint.
+    #[must_use]
+    pub fn end(&self) -> End {
+        self.end
+    }
+
+    /// Whether the vehicle lands where the route ends.
+    #[must_use]
+    pub fn lands(&self) -> bool {
+        self.lands
+    }
+
+    /// Bound of the acceleration along it and across it, m/s².
+    #[must_use]
+    pub fn acceleration(&self) -> f64 {
+        self.acceleration
+    }
+
+    /// Whether its yaw points to a line rather than changing from waypoint to waypoint.
+    #[must_use]
+    pub fn is_pointing(&self) -> bool {
+        self.is_pointing
     }
 
     /// The table that is flown, before it is rounded.
@@ -186,6 +213,7 @@ struct StopFields {
 enum EndField {
     #[default]
     Hover,
+    Land,
     Back(u32),
     Again(u32),
 }
@@ -251,8 +279,12 @@ pub(super) fn parse<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<Rou
         let dwell = dwell_s.map(|dwell| within(&field(&format!("stops[{number}].dwell_s")), dwell, 0.0..=1e5));
         waypoints[index].stop = Some(dwell.transpose()?.unwrap_or(f64::INFINITY));
     }
+    let lands = matches!(end, EndField::Land);
+    if lands && is_closed {
+        return Err(Invalid::new(field("end"), "\"land\" needs a route that does not close"));
+    }
     let end = match end {
-        EndField::Hover => End::Stay,
+        EndField::Hover | EndField::Land => End::Stay,
         EndField::Back(times) => End::Back(times),
         EndField::Again(times) => End::Again(times),
     };
@@ -270,7 +302,8 @@ pub(super) fn parse<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<Rou
     }
     let RouteTable { knots, runs } = table;
     let table = RouteTable { knots: knots.into(), runs: runs.into() };
-    Ok(RouteSpec { waypoints, is_closed, end, table })
+    let (acceleration, is_pointing) = (pace.acceleration, pointing.is_some());
+    Ok(RouteSpec { waypoints, is_closed, end, lands, acceleration, is_pointing, table })
 }
 
 /// The table through `waypoints`.

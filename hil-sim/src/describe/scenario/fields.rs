@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::gains::{self, GainFields, PoleField};
 use super::requests::{AskedFields, requests};
 use super::{ControllerSpec, EstimatorSpec, Law, Obstacle, Scenario, steady};
-use crate::describe::course::{parse_path, parse_reference};
+use crate::describe::course::{RouteSpec, parse_path, parse_reference};
 use crate::describe::input::{Invalid, all_within, read, within};
 use crate::describe::parameters::set_named;
 use crate::study::check::{Fence, Limits};
@@ -225,6 +225,10 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
         Some(_) => return Err(Invalid::new("initial", "neither \"steady\" nor a table of coordinates")),
     };
     let zeta = fields.controller.zeta.unwrap_or(zeta);
+    let lands = law.route().is_some_and(RouteSpec::lands);
+    if lands && fields.ground.is_none() {
+        return Err(Invalid::new("path.end", "\"land\" needs a [ground] to land on"));
+    }
     let mut limits = match fields.limits {
         Some(value) => Limits::read("limits", value, &flown)?,
         None => Limits::of(&flown),
@@ -261,7 +265,10 @@ pub(super) fn scenario(name: &str, table: toml::Table) -> Result<Scenario, Inval
             rate_loop_s,
             observer: fields.controller.observer.params()?,
             limits: told_limits,
-            supervised: fields.controller.supervised.unwrap_or(!(requests.is_empty() && parameters.is_empty())),
+            supervised: fields
+                .controller
+                .supervised
+                .unwrap_or(lands || !(requests.is_empty() && parameters.is_empty())),
             parameters,
         },
         vehicle,

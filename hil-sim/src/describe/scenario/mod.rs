@@ -56,7 +56,7 @@ use controller::{
     ActuatorLimits, Command, Gains, ObserverParams, Request, Sampling, State, TrackGains, VehicleParams,
 };
 
-use crate::describe::course::{PathSpec, ReferenceSpec};
+use crate::describe::course::{PathSpec, ReferenceSpec, RouteSpec};
 use crate::describe::input::Invalid;
 use crate::study::check::{Fence, Limits};
 use crate::world::{Actuators, Bodies, Cable, Environment, Ground, Sensors, Timing};
@@ -193,6 +193,15 @@ impl Law {
         match self {
             Self::Follow { .. } => "follow",
             Self::Track { .. } => "track",
+        }
+    }
+
+    /// The route that is followed, if it is one.
+    #[must_use]
+    pub fn route(&self) -> Option<&RouteSpec> {
+        match self {
+            Self::Follow { path, .. } => path.route(),
+            Self::Track { .. } => None,
         }
     }
 
