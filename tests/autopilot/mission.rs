@@ -611,6 +611,40 @@ fn a_fence_is_kept_before_a_flight_and_in_it() {
     assert_eq!(flight.station.autopilot.mode(), Mode::Hold);
 }
 
+#[test]
+fn the_way_to_a_route_keeps_the_fence_or_is_refused() {
+    use MavCmd::*;
+    // The route begins at (10, 0, -10), behind a keep-out of 2 m about (5, 0).
+    let start = |at: [f64; 3]| {
+        let mut station = station();
+        let fence = [fence(MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, 2.0, [5.0, 0.0])];
+        let route = [waypoint([10.0, 0.0, -10.0]), waypoint([20.0, 0.0, -10.0])];
+        for (items, kind) in [
+            (&fence[..], MavMissionType::MAV_MISSION_TYPE_FENCE),
+            (&route[..], MavMissionType::MAV_MISSION_TYPE_MISSION),
+        ] {
+            assert_eq!(upload(&mut station, items, kind, &mut Lossy::none()), (KEPT as u8, vec![]));
+        }
+        let mut flight = Flight::at(station, at);
+        flight.arm();
+        let answer = flight.command(MAV_CMD_MISSION_START, 0.0, 0.0);
+        flight.fly(1.0);
+        (answer, flight.station.autopilot.mode())
+    };
+    let refused = (NOT_NOW, vec!["way to the route: the load too near the fence".to_owned()]);
+    for aside in [0.0, 2.9, -5.5] {
+        let (answer, mode) = start([0.0, aside, -10.0]);
+        assert_eq!(answer, refused, "{aside}");
+        assert!(!matches!(mode, Mode::Join | Mode::Follow), "{aside}: {mode:?}");
+    }
+    // From (0, 8) the straight way passes (5, 0) at 5 sin 38.66 deg = 3.12 m, and 3 m are kept.
+    for at in [[0.0, 8.0, -10.0], [10.0, 5.0, -12.0]] {
+        let (answer, mode) = start(at);
+        assert_eq!(answer, (ACCEPTED, vec![]), "{at:?}");
+        assert!(matches!(mode, Mode::Join | Mode::Follow), "{at:?}: {mode:?}");
+    }
+}
+
 /// A point's distance from a polygon's edge or a circle's, on the right side, by sampling the edge: not
 /// as the flight program finds it.
 fn distance(corners: &[[f32; 2]], circle: Option<([f32; 2], f32)>, is_inside: bool, p: Vector3<f64>) -> f64 {

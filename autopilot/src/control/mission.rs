@@ -1,7 +1,7 @@
 //! A mission under way: what its end leads to, pause and continue, speed, and the item that comes
 //! next.
 
-use controller::{Mode, Request, State, Uav};
+use controller::{Mode, Request, State, Uav, Vector3};
 use link::Home;
 use rig::parameter;
 
@@ -101,8 +101,43 @@ impl Autopilot {
         if self.mode() == Mode::Idle && !self.navigates {
             return Err("take-off needs the UAV's own position");
         }
-        self.request(Request::Follow);
-        Ok(())
+        self.follow()
+    }
+
+    /// Joins the path from where the vehicle is, and follows it.
+    ///
+    /// # Errors
+    /// The straight way to a route does not keep the fence's margin.
+    pub(crate) fn follow(&mut self) -> Result<(), &'static str> {
+        match self.way_breach() {
+            None => {
+                self.request(Request::Follow);
+                Ok(())
+            }
+            Some("the load") => Err("way to the route: the load too near the fence"),
+            Some("the UAV") => Err("way to the route: the UAV too near the fence"),
+            Some(_) => Err("way to the route: the cable too near the fence"),
+        }
+    }
+
+    /// What does not keep the fence's margin on the straight way to where the route is joined, from
+    /// the air or from above where the vehicle stands.
+    fn way_breach(&self) -> Option<&'static str> {
+        if matches!(self.mode(), Mode::Join | Mode::Follow) {
+            return None;
+        }
+        let Flown::Route(route) = self.rig.as_ref()?.following()?.path() else { return None };
+        let State { position, rod, .. } = self.newest.as_ref()?;
+        let rig = self.settings.rig();
+        let up = Vector3::new(0.0, 0.0, -rig.get(parameter!("VEH_ROD")));
+        let from = if self.mode() == Mode::Idle {
+            let risen = position - Vector3::new(0.0, 0.0, rig.get(parameter!("POL_CLEAR")));
+            [risen, risen + up]
+        } else {
+            let above = self.navigation.uav().map_or(position + rod * up.z, |uav| uav.position);
+            [*position, above]
+        };
+        self.mission.way_breach(&from, &[route.point(), route.point() + up], &self.settings)
     }
 
     /// Has the mission go on with the legs since the stop before `item`.

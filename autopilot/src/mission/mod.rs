@@ -337,6 +337,22 @@ impl Mission {
         lists.regions.keeps(&[*load, *uav], &keeping(settings, 0.5))
     }
 
+    /// What of load, UAV and cable does not keep the margin on the straight way between two places of
+    /// load and UAV. A cable that is moved without turning is bounded by those ways and its two ends.
+    pub(crate) fn way_breach(
+        &self,
+        from: &[Vector3<f32>; 2],
+        to: &[Vector3<f32>; 2],
+        settings: &Settings,
+    ) -> Option<&'static str> {
+        let lists = self.lists.as_ref()?;
+        let keeping = keeping(settings, 1.0);
+        let [load, uav] = [0, 1].map(|body: usize| [from, to].map(|at| at.get(body).copied().unwrap_or_default()));
+        [("the load", load), ("the UAV", uav), ("the cable", *from), ("the cable", *to)]
+            .into_iter()
+            .find_map(|(what, way)| (!lists.regions.keeps(&way, &keeping)).then_some(what))
+    }
+
     /// The rig that flies the mission.
     pub(crate) fn rig(&mut self, settings: &Settings) -> Result<Rig<f32, Flown>, NoRig> {
         if self.items(Kind::Mission).is_empty() {

@@ -175,7 +175,7 @@ fn ask(autopilot: &mut Autopilot, mode: Mode, is_set: bool) -> Result<(), &'stat
     let request = match mode {
         Mode::TakeOff => return autopilot.take_off(),
         Mode::Land if !is_set => return autopilot.land(),
-        Mode::Follow => Request::Follow,
+        Mode::Follow => return autopilot.follow(),
         Mode::Hold => Request::Hold,
         Mode::Land => Request::Land,
         _ => Request::Idle,
