@@ -35,8 +35,8 @@ pub const TORQUE_BANDWIDTH: Range = Range::new("torque_bandwidth", 0.0, 100.0, 4
 pub const PAYLOAD_BOUND: Range = Range::new("payload_bound", 0.0, 1e3, 15.0);
 /// [`ObserverParams::rod_bound`](crate::ObserverParams::rod_bound), 1/s²: about 1 g/m.
 pub const ROD_BOUND: Range = Range::new("rod_bound", 0.0, 1e3, 10.0);
-/// [`ObserverParams::torque_bound`](crate::ObserverParams::torque_bound), N·m.
-pub const TORQUE_BOUND: Range = Range::new("torque_bound", 0.0, 1e3, 1.0);
+/// [`ObserverParams::torque_lever`](crate::ObserverParams::torque_lever), m.
+pub const TORQUE_LEVER: Range = Range::new("torque_lever", 0.0, 1e3, 0.1);
 
 /// A warning's and a limit's range, where the warning lies on the safe side of the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -44,7 +44,12 @@ pub(crate) const ENTRIES: &[Entry<f64>] = &[
         "Largest force on the payload that may be found, as an acceleration.",
     ),
     Entry::of("OBS_MAX_ROD", ranges::ROD_BOUND, "1/s^2", "Largest acceleration of the rod that may be found."),
-    Entry::of("OBS_MAX_TAU", ranges::TORQUE_BOUND, "N.m", "Largest torque that may be found."),
+    Entry::of(
+        "OBS_MAX_LEVER",
+        ranges::TORQUE_LEVER,
+        "m",
+        "Lever of the hover thrust that is the largest torque which may be found.",
+    ),
 ];
 
 impl<T: Real> Parameters<T> {
@@ -59,8 +64,8 @@ impl<T: Real> Parameters<T> {
             torque_bandwidth,
             payload_bound,
             rod_bound,
-            torque_bound,
-        ] = self.run(run!("OBS_W_LOAD" to "OBS_MAX_TAU"));
+            torque_lever,
+        ] = self.run(run!("OBS_W_LOAD" to "OBS_MAX_LEVER"));
         ObserverParams {
             payload_bandwidth,
             along_bandwidth,
@@ -69,7 +74,7 @@ impl<T: Real> Parameters<T> {
             torque_bandwidth,
             payload_bound,
             rod_bound,
-            torque_bound,
+            torque_lever,
         }
     }
 }

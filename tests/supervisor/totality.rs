@@ -261,7 +261,7 @@ impl Setup {
             ("torque_bandwidth", &mut observer.torque_bandwidth),
             ("payload_bound", &mut observer.payload_bound),
             ("rod_bound", &mut observer.rod_bound),
-            ("torque_bound", &mut observer.torque_bound),
+            ("torque_lever", &mut observer.torque_lever),
             ("speed", &mut approach.speed),
             ("acceleration", &mut approach.acceleration),
             ("tilt", &mut approach.tilt),

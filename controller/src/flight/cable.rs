@@ -67,6 +67,11 @@ impl<T: Real> Cable<T> {
         self.pull.start(&(state.velocity - state.rod_rate * params.rod_length), force);
     }
 
+    /// The pull is observed with no more than the bandwidth `most`, rad/s, from now on.
+    pub(crate) fn yield_to(&mut self, most: T) {
+        self.pull = self.pull.with_bandwidth(self.period, most);
+    }
+
     /// After periods without the UAV's `velocity`.
     pub(crate) fn resume(&mut self, velocity: &Vector3<T>) {
         self.pull.resume(velocity);

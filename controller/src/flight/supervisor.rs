@@ -19,11 +19,13 @@ use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
 
-/// Below this share of the hover thrust the vehicle is falling: hold, which stops a fall as hard as
-/// the rotors can, goes first.
-const JOINING_THRUST: f64 = 0.75;
+/// With more vertical acceleration than this, m/s², the load is falling or swings high. Hold, which
+/// stops both as hard as the rotors can, goes first: the path would be joined by as much of a dip, m.
+const JOINING: f64 = 0.5;
 /// So far above its target, m, a landing UAV may stand already, and does not go aside.
 const CARRIED: f64 = 0.3;
+/// Time, s, over which hold takes up the torque that is observed.
+const TRIMMED: f64 = 1.0;
 /// Calm enough to join the path: speed, m/s, swing, 1/s, and cosine of the tilt (18°).
 const CALM_SPEED: f64 = 1.0;
 const CALM_SWING: f64 = 0.3;
@@ -103,6 +105,8 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     policy: Policy<T>,
     pace: Pace<T>,
     hold: Hold<T>,
+    /// The torque, N·m, by which hold makes good a steady one.
+    trim: Vector3<T>,
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
 }
@@ -137,6 +141,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
             footing: Footing::none(),
+            trim: Vector3::zeros(),
             from: T::zero(),
             blind: T::zero(),
             calm: T::zero(),
@@ -368,6 +373,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     fn begin(&mut self, state: &State<T>, thrust: T) {
         self.cable.begin(self.sampler.vehicle(), state, thrust);
         self.payload.leave();
+        self.trim = Vector3::zeros();
     }
 
     /// By the law, or by hold.
@@ -518,8 +524,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// Joins the path, if the vehicle is where the law can fly it.
     #[cold]
     fn join(&mut self, state: &State<T>, uav: Option<&Uav<T>>) {
-        let falling = self.sampler.applied().thrust < self.sampler.vehicle().hover_thrust() * T::lit(JOINING_THRUST);
-        if falling || self.standing(state) != Standing::Inside {
+        let [acceleration, ..] = self.sampler.continued(state);
+        if acceleration.abs() > T::lit(JOINING) || self.standing(state) != Standing::Inside {
             return;
         }
         match self.law.join(state, &self.pace) {
@@ -550,6 +556,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn enter_hold(&mut self, uav: &Uav<T>, fault: Option<Fault>) {
         self.hold = Hold::from(self.sampler.vehicle(), uav, &self.sampler.swing());
+        self.cable.yield_to(self.sampler.most_along());
         self.sampler.leave();
         self.mode = Mode::Hold;
         self.calm = T::zero();
@@ -595,14 +602,18 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             (uav, pull, None, velocity)
         } else {
             let velocity = self.wanted_velocity(state, now);
-            let vehicle = self.sampler.vehicle();
-            let taut = state.filter(|state| self.hangs(&(state.position - now.position)));
-            let swing = taut.map(|_| self.sampler.swing());
-            (*now, self.cable.pull(vehicle), swing, velocity)
+            let is_taut = state.is_some_and(|state| self.hangs(&(state.position - now.position)));
+            if is_taut && self.sampler.has_bounced() {
+                self.cable.yield_to(self.sampler.most_along());
+            }
+            let swing = is_taut.then(|| self.sampler.swing());
+            (*now, self.cable.pull(self.sampler.vehicle()), swing, velocity)
         };
         let vehicle = self.sampler.vehicle();
         let uav = self.sampler.look_ahead(&aimed, &pull);
-        let wanted = self.hold.step(vehicle, &uav, &pull, swing.as_ref(), &velocity, period);
+        let mut wanted = self.hold.step(vehicle, &uav, &pull, swing.as_ref(), &velocity, period);
+        self.trim -= (self.trim + self.sampler.torque()) * (period / T::lit(TRIMMED)).min(T::one());
+        wanted.torque += self.trim;
         if self.mode == Mode::Land {
             let may_hang = state.is_none_or(|state| self.may_hang(&(state.position - now.position)));
             match self.footing.feel(self.hold.left_above(now), now.body_rate.z, may_hang, period) {

@@ -3,6 +3,7 @@
 
 pub(crate) mod actuator;
 pub(crate) mod allocation;
+pub(crate) mod bounce;
 pub(crate) mod controller;
 pub(crate) mod observer;
 pub(crate) mod pull;

@@ -27,7 +27,7 @@ use nalgebra::Vector3;
 
 use crate::ranges::{
     ALONG_BANDWIDTH, CABLE_STIFFNESS, PAYLOAD_BANDWIDTH, PAYLOAD_BOUND, ROD_BANDWIDTH, ROD_BOUND, TORQUE_BANDWIDTH,
-    TORQUE_BOUND,
+    TORQUE_LEVER,
 };
 
 /// Observer bandwidths o, rad/s, and the bounds of what they may find. A bandwidth of zero switches
@@ -57,8 +57,8 @@ pub struct ObserverParams<T> {
     pub payload_bound: T,
     /// Bound of |δ̂|, 1/s².
     pub rod_bound: T,
-    /// Bound of |τ̂_d|, N·m.
-    pub torque_bound: T,
+    /// Bound of |τ̂_d|, as the lever, m, at which it is the hover thrust's.
+    pub torque_lever: T,
 }
 
 impl<T: Real> ObserverParams<T> {
@@ -68,7 +68,8 @@ impl<T: Real> ObserverParams<T> {
         Self::with_bandwidth(T::zero())
     }
 
-    /// The same `bandwidth`, rad/s, for all three, with bounds of 1.5 g, 1 g/m and 1 N·m.
+    /// The same `bandwidth`, rad/s, for all three, with bounds of 1.5 g, 1 g/m and a
+    /// tenth of a metre of hover thrust.
     pub fn with_bandwidth(bandwidth: T) -> Self {
         Self {
             payload_bandwidth: bandwidth,
@@ -78,7 +79,7 @@ impl<T: Real> ObserverParams<T> {
             torque_bandwidth: bandwidth,
             payload_bound: PAYLOAD_BOUND.default(),
             rod_bound: ROD_BOUND.default(),
-            torque_bound: TORQUE_BOUND.default(),
+            torque_lever: TORQUE_LEVER.default(),
         }
     }
 
@@ -93,7 +94,7 @@ impl<T: Real> ObserverParams<T> {
             torque_bandwidth: self.torque_bandwidth.cast(),
             payload_bound: self.payload_bound.cast(),
             rod_bound: self.rod_bound.cast(),
-            torque_bound: self.torque_bound.cast(),
+            torque_lever: self.torque_lever.cast(),
         }
     }
 
@@ -105,7 +106,7 @@ impl<T: Real> ObserverParams<T> {
         TORQUE_BANDWIDTH.check(self.torque_bandwidth)?;
         PAYLOAD_BOUND.check(self.payload_bound)?;
         ROD_BOUND.check(self.rod_bound)?;
-        TORQUE_BOUND.check(self.torque_bound)
+        TORQUE_LEVER.check(self.torque_lever)
     }
 
     /// With forces observed as much faster as a told `latency`, s, asks for (12.9).
@@ -246,15 +247,32 @@ impl<T: Real> Channel<T> {
     }
 }
 
+/// The observer of d̂ along the rod.
+#[derive(Clone, Copy, Debug)]
+struct Along<T> {
+    /// What its gains have over those across, where they are not the same.
+    more: Option<Gains<T>>,
+    bandwidth: T,
+    /// What an elastic cable allows, rad/s.
+    most: T,
+}
+
+impl<T: Real> Along<T> {
+    fn new(bandwidth: T, most: T, across: &Gains<T>, period: T) -> Self {
+        let more = Gains::growing(bandwidth, period).minus(across);
+        Self { more: Some(more).filter(|more| more.velocity != T::zero()), bandwidth, most }
+    }
+}
+
 /// The three observers and their estimate.
 #[derive(Clone, Copy, Debug)]
 pub struct Observer<T> {
     payload: Channel<T>,
     rod: Channel<T>,
     body: Channel<T>,
-    /// What d̂'s gains along the rod have over the others, where they are not the same.
-    along: Option<Gains<T>>,
-    most_along: T,
+    /// Along the rod, and as it was told.
+    along: Along<T>,
+    told_along: Along<T>,
     inertia: Vector3<T>,
     estimate: Disturbance<T>,
 }
@@ -262,15 +280,15 @@ pub struct Observer<T> {
 impl<T: Real> Observer<T> {
     pub(crate) fn new(vehicle: &Vehicle<T>, params: &ObserverParams<T>, period: T) -> Self {
         let across = Gains::growing(params.payload_bandwidth, period);
-        let along = Gains::growing(params.along(vehicle), period).minus(&across);
+        let along = Along::new(params.along(vehicle), params.most_along(vehicle), &across, period);
         let rod = Gains::growing(params.rod_bandwidth, period);
         let torque = Gains::steady(params.torque_bandwidth, period);
         Self {
             payload: Channel::new(across, params.payload_bound, period),
             rod: Channel::new(rod, params.rod_bound, period),
-            body: Channel::new(torque, params.torque_bound, period),
-            along: Some(along).filter(|along| along.velocity != T::zero()),
-            most_along: params.most_along(vehicle),
+            body: Channel::new(torque, params.torque_lever * vehicle.hover_thrust(), period),
+            along,
+            told_along: along,
             inertia: *vehicle.inertia(),
             estimate: Disturbance::none(),
         }
@@ -278,12 +296,25 @@ impl<T: Real> Observer<T> {
 
     /// The bandwidth, rad/s, that an elastic cable allows along itself.
     pub(crate) fn most_along(&self) -> T {
-        self.most_along
+        self.along.most
+    }
+
+    /// From now on no faster along the `rod` than a `bounce` on the cable, rad/s, allows;
+    /// starting with what is usual `along` it, m/s².
+    #[cold]
+    pub(crate) fn yield_to(&mut self, bounce: T, rod: &Vector3<T>, along: T) {
+        let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
+        *payload += rod * (along - rod.dot(payload));
+        *payload_rate -= rod * rod.dot(payload_rate);
+        let Channel { gains, period, .. } = &self.payload;
+        let bandwidth = self.along.bandwidth.min(bounce * T::lit(BOUNCE_SHARE));
+        self.along = Along::new(bandwidth, self.along.most.min(bandwidth), gains, *period);
     }
 
     /// Forgets every estimate, and starts from `state`.
     pub(crate) fn reset(&mut self, state: &State<T>) {
         self.estimate = Disturbance::none();
+        self.along = self.told_along;
         self.restart(state);
     }
 
@@ -321,7 +352,7 @@ impl<T: Real> Observer<T> {
         after: &Vector3<T>,
     ) {
         let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
-        let apart = self.along.as_ref().map(|gains| (gains, rod));
+        let apart = self.along.more.as_ref().map(|gains| (gains, rod));
         self.payload.grow(velocity, before, after, payload, payload_rate, apart);
     }
 

@@ -47,6 +47,11 @@ impl<T: Real> Pull<T> {
         }
     }
 
+    /// The same with no more than the bandwidth `most`, rad/s, from now on.
+    pub(crate) fn with_bandwidth(self, period: T, most: T) -> Self {
+        Self { velocity: self.velocity, force: self.force, ..Self::new(period, most) }
+    }
+
     /// Starts at `velocity`, with a pull of `force` (m/s², per UAV mass).
     pub(crate) fn start(&mut self, velocity: &Vector3<T>, force: Vector3<T>) {
         self.velocity = *velocity;

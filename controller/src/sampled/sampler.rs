@@ -21,6 +21,7 @@ use crate::law::solution::Answer;
 use crate::law::{Ahead, Law};
 use crate::ranges::MAX_THRUST;
 use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
+use crate::sampled::bounce::Bounce;
 use crate::sampled::observer::{Observer, ObserverParams};
 use crate::sampled::weight::Weight;
 use crate::sampling::Sampling;
@@ -48,6 +49,7 @@ struct Memory<T> {
     vehicle: Vehicle<T>,
     weighed: Vehicle<T>,
     weight: Weight<T>,
+    bounce: Bounce<T>,
     period: T,
     half_hold: T,
     /// What of the horizon comes after the commands in flight.
@@ -96,6 +98,7 @@ impl<T: Real> Sampler<T> {
             vehicle,
             weighed: vehicle,
             weight: Weight::told(),
+            bounce: Bounce::none(),
             period,
             half_hold: sampling.half_hold(),
             rest: if sampling.look_ahead { horizon - actuators.latency(period) } else { T::zero() },
@@ -163,13 +166,42 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// Learns from λ without d what everything weighs, and flies on that.
     #[inline(always)]
     fn weigh(&mut self, lambda: T) {
-        let Memory { vehicle, weighed, weight, observer, last, period, .. } = &mut self.memory;
+        let Memory { vehicle, weighed, weight, bounce, observer, last, period, .. } = &mut self.memory;
         let was_known = weight.is_known();
         let share = weight.learn(lambda, observer.estimate().payload.dot(&last.rod), *period);
         weighed.weigh(vehicle, share);
-        if weight.is_known() && !was_known {
+        let is_found = weight.is_known() && !was_known;
+        let frequency = bounce.look(weight.implied(), *period);
+        if let Some(frequency) = frequency {
+            self.yield_to(frequency, lambda);
+        }
+        if is_found {
             self.unburden();
         }
+    }
+
+    /// Whether a bounce on the cable has just been seen by what is not the law's: the observers then
+    /// follow it no more.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn has_bounced(&mut self) -> bool {
+        let Memory { weighed, weight, bounce, observer, last, actuators, period, .. } = &mut self.memory;
+        let lambda = lambda(weighed, last, actuators.applied().thrust);
+        let implied = weight.imply(lambda, observer.estimate().payload.dot(&last.rod));
+        let frequency = bounce.look(implied, *period);
+        if let Some(frequency) = frequency {
+            self.yield_to(frequency, lambda);
+        }
+        frequency.is_some()
+    }
+
+    /// The observers are no faster along the rod than a bounce of this `frequency`, rad/s, allows, and
+    /// begin at its mean.
+    #[cold]
+    #[inline(never)]
+    fn yield_to(&mut self, frequency: T, lambda: T) {
+        let Memory { weight, bounce, observer, last, .. } = &mut self.memory;
+        observer.yield_to(frequency, &last.rod, weight.along(bounce.mean(), lambda));
     }
 
     /// What everything weighs has just been found: the observers need not hold it up any more. Held
@@ -228,8 +260,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// fades.
     #[inline(never)]
     pub(crate) fn carry_on(&mut self, state: &State<T>) {
-        let thrust = self.memory.actuators.arriving().thrust;
-        self.memory.zeta = continuing(&self.memory.weighed, state, thrust, self.memory.observer.estimate());
+        self.memory.zeta = self.continued(state);
         self.memory.u_zeta = T::zero();
         self.soften();
     }
@@ -238,6 +269,13 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     pub(crate) fn leave(&mut self) {
         self.memory.weight.leave();
         self.soften();
+    }
+
+    /// The ζ (11.8) that continues what is being applied.
+    #[inline(never)]
+    pub(crate) fn continued(&self, state: &State<T>) -> [T; 4] {
+        let Memory { weighed, observer, actuators, .. } = &self.memory;
+        continuing(weighed, state, actuators.arriving().thrust, observer.estimate())
     }
 
     /// Has the next command's step against what is being applied fade.
@@ -308,6 +346,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
         self.memory.last = *state;
         (self.memory.weighed, self.memory.weight) = (self.memory.vehicle, Weight::told());
+        self.memory.bounce = Bounce::none();
         self.memory.actuators.reset(applied);
         self.memory.observer.reset(state);
     }
@@ -324,6 +363,11 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[cold]
     pub(crate) fn keep(&mut self, known: Disturbance<T>) {
         self.memory.observer.keep(known);
+    }
+
+    /// The torque found, N·m, in body axes.
+    pub(crate) fn torque(&self) -> &Vector3<T> {
+        &self.memory.observer.estimate().torque
     }
 
     /// What hangs from the UAV, as it was sampled last.

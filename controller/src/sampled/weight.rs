@@ -34,8 +34,7 @@ impl<T: Real> Weight<T> {
     /// A `period` (s) of the law later, with λ without d and d·q, both m/s²: the share to fly on.
     #[inline]
     pub(crate) fn learn(&mut self, lambda: T, along: T, period: T) -> T {
-        // Of what is no number nothing is implied.
-        self.implied = (self.flown * lambda / (lambda + along)).clamp(T::zero(), T::lit(10.0));
+        self.implied = self.imply(lambda, along);
         self.learning = (self.learning + period).min(T::lit(KNOWN));
         self.usual += (self.implied - self.usual) * (period / self.learning);
         if self.is_known() {
@@ -51,6 +50,24 @@ impl<T: Real> Weight<T> {
         if !self.is_known() {
             self.learning = T::zero();
         }
+    }
+
+    /// The share that λ without d and d·q, both m/s², imply.
+    #[inline]
+    pub(crate) fn imply(&self, lambda: T, along: T) -> T {
+        // Of what is no number nothing is implied.
+        (self.flown * lambda / (lambda + along)).clamp(T::zero(), T::lit(10.0))
+    }
+
+    /// d·q, m/s², that implies a `share`.
+    pub(crate) fn along(&self, share: T, lambda: T) -> T {
+        lambda * (self.flown / share - T::one())
+    }
+
+    /// The share implied at the last sample.
+    #[inline]
+    pub(crate) fn implied(&self) -> T {
+        self.implied
     }
 
     /// Whether the usual share is known.

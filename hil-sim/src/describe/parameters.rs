@@ -47,8 +47,8 @@ pub fn without_path(spec: &ControllerSpec) -> Result<Parameters<f64>, Unsupporte
     run_of(all, run!("OBS_W_LOAD" to "OBS_EA"), [payload_bandwidth, along_bandwidth, cable_stiffness])?;
     let ObserverParams { rod_bandwidth, torque_bandwidth, .. } = spec.observer;
     run_of(all, run!("OBS_W_ROD" to "OBS_W_TAU"), [rod_bandwidth, torque_bandwidth])?;
-    let ObserverParams { payload_bound, rod_bound, torque_bound, .. } = spec.observer;
-    run_of(all, run!("OBS_MAX_LOAD" to "OBS_MAX_TAU"), [payload_bound, rod_bound, torque_bound])?;
+    let ObserverParams { payload_bound, rod_bound, torque_lever, .. } = spec.observer;
+    run_of(all, run!("OBS_MAX_LOAD" to "OBS_MAX_LEVER"), [payload_bound, rod_bound, torque_lever])?;
     let ActuatorLimits { min_thrust, max_thrust, max_torque } = spec.limits;
     // No limits are 10⁶ of either kind; the table's range ends sooner, and further off than any
     // flight.
