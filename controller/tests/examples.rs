@@ -10,6 +10,8 @@ mod fitted_loop;
 mod own_curve;
 #[path = "../examples/rotors.rs"]
 mod rotors;
+#[path = "../examples/route.rs"]
+mod route;
 #[path = "../examples/tracking.rs"]
 mod tracking;
 
@@ -22,4 +24,4 @@ macro_rules! flies {
     )*};
 }
 
-flies!(circle, fitted_loop, own_curve, rotors, tracking);
+flies!(circle, fitted_loop, own_curve, rotors, route, tracking);

@@ -4,6 +4,7 @@
 mod common;
 mod failsafe;
 mod mission;
+mod route;
 
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
@@ -75,6 +76,17 @@ fn a_mission_from_ground_to_ground_is_the_same_on_every_emulated_board() {
         let there = mission::fly(|measured, request, t_s| target.fly(measured, request, t_s).unwrap());
         assert_eq!(there, here, "on {machine}");
     }
+}
+
+#[test]
+fn a_route_is_uploaded_and_flown_to_its_end_on_an_emulated_board() {
+    let (here, there) = UnixStream::pair().expect("sockets");
+    std::thread::spawn(move || hil_sim::hil::serve(there));
+    let soft = Target::over(Endpoint::Unix("the other thread".into()), Box::new(here), OPTIONS).unwrap();
+    let (here, ..) = route::flown_there(soft);
+    let [(machine, image), ..] = images();
+    let (there, ..) = route::flown_there(emulated(machine, image, OPTIONS));
+    assert!(there == here, "another flight on {machine}");
 }
 
 #[test]
