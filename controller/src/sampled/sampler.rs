@@ -98,7 +98,7 @@ impl<T: Real> Sampler<T> {
             vehicle,
             weighed: vehicle,
             weight: Weight::told(),
-            bounce: Bounce::none(),
+            bounce: Bounce::none(&vehicle),
             period,
             half_hold: sampling.half_hold(),
             rest: if sampling.look_ahead { horizon - actuators.latency(period) } else { T::zero() },
@@ -346,7 +346,7 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
         self.memory.last = *state;
         (self.memory.weighed, self.memory.weight) = (self.memory.vehicle, Weight::told());
-        self.memory.bounce = Bounce::none();
+        self.memory.bounce = Bounce::none(&self.memory.vehicle);
         self.memory.actuators.reset(applied);
         self.memory.observer.reset(state);
     }
