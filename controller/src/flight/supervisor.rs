@@ -76,9 +76,8 @@ const CALM_TILT: f64 = 0.95;
 /// its not turning when it is asked to. One that is carried and does not stand hangs from its cable,
 /// since the load has been *caught*: it holds until something else is asked for.
 ///
-/// From hold the path is joined at once if follow has just been asked for and the vehicle is inside
-/// its envelope, and otherwise after
-/// [`Policy::calm`]. A fault whose rotors were cut is left by off alone. A payload that is lost keeps
+/// From hold the path is joined at once if follow has just been asked for, the vehicle is inside its
+/// envelope and the load does not fall, and otherwise after [`Policy::calm`]. A fault whose rotors were cut is left by off alone. A payload that is lost keeps
 /// the vehicle in hold, until the cable has pulled for three seconds as it did before the loss.
 ///
 /// Whatever bits come in, the command that goes out is finite and within the limits, its fault is
