@@ -1,4 +1,5 @@
-//! A route of four waypoints, with a stop and a corner, laid into a table and flown from end to end.
+//! A route of four waypoints, with a stop and a corner, laid into a table and flown from end to
+//! end.
 //!
 //!     cargo run -p controller --example route
 

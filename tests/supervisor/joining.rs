@@ -40,9 +40,9 @@ fn sinks_at(run: u64) -> f64 {
     sunk
 }
 
-/// One sample's noise is an acceleration of 0.05 m/s², half of it by hold's 2 1/s of velocity, which
-/// the compensator goes on from; twice that for a second. Grown by what fades of the step, it was
-/// 0.25 m/s.
+/// One sample's noise is an acceleration of 0.05 m/s², half of it by hold's 2 1/s of velocity,
+/// which the compensator goes on from; twice that for a second. Grown by what fades of the step, it
+/// was 0.25 m/s.
 #[test]
 fn a_noisy_hold_leaves_no_fall_behind_in_the_join() {
     let worst = (0..20).map(sinks_at).fold(0.0, f64::max);

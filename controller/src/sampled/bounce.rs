@@ -1,4 +1,5 @@
-//! Whether load and UAV bounce on a cable that stretches, by what the observers imply that all weighs.
+//! Whether load and UAV bounce on a cable that stretches, by what the observers imply that all
+//! weighs.
 
 use core::f64::consts::PI;
 
@@ -42,8 +43,8 @@ impl<T: Real> Bounce<T> {
         }
     }
 
-    /// A `period` (s) later, with what is `implied` that all weighs, as a share of what was told: the
-    /// frequency, rad/s, of a bounce.
+    /// A `period` (s) later, with what is `implied` that all weighs, as a share of what was told:
+    /// the frequency, rad/s, of a bounce.
     #[inline]
     pub(crate) fn look(&mut self, implied: T, period: T) -> Option<T> {
         self.since += period;

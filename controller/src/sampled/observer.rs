@@ -154,8 +154,8 @@ struct Gains<T> {
 }
 
 impl<T: Real> Gains<T> {
-    /// Of a disturbance that grows, (12.4): 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 − p)³/h² with p =
-    /// e^(−o h).
+    /// Of a disturbance that grows, (12.4): 1 − p³, (3/2) (1 − p)² (1 + p)/h and (1 − p)³/h² with p
+    /// = e^(−o h).
     fn growing(bandwidth: T, period: T) -> Self {
         let pole = (-bandwidth * period).exp();
         let gap = (T::one() - pole) / period;
@@ -337,8 +337,8 @@ impl<T: Real> Observer<T> {
         &self.estimate
     }
 
-    /// Corrects d̂ by the sampled `rod` and payload's `velocity`. `before`: the model's acceleration just
-    /// before the sample; `after`: just after it.
+    /// Corrects d̂ by the sampled `rod` and payload's `velocity`. `before`: the model's
+    /// acceleration just before the sample; `after`: just after it.
     ///
     /// Commands step at samples, and the model is affine in them. The last sample's `after` could
     /// not know its step, so this sample's `before` makes it good: the trapezoid over the last

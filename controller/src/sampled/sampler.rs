@@ -180,8 +180,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         }
     }
 
-    /// Whether a bounce on the cable has just been seen by what is not the law's: the observers then
-    /// follow it no more.
+    /// Whether a bounce on the cable has just been seen by what is not the law's: the observers
+    /// then follow it no more.
     #[cold]
     #[inline(never)]
     pub(crate) fn has_bounced(&mut self) -> bool {
@@ -195,8 +195,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         frequency.is_some()
     }
 
-    /// The observers are no faster along the rod than a bounce of this `frequency`, rad/s, allows, and
-    /// begin at its mean.
+    /// The observers are no faster along the rod than a bounce of this `frequency`, rad/s, allows,
+    /// and begin at its mean.
     #[cold]
     #[inline(never)]
     fn yield_to(&mut self, frequency: T, lambda: T) {
@@ -265,7 +265,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.soften();
     }
 
-    /// No law flies any more: the next command's step fades, and what was not learnt yet is forgotten.
+    /// No law flies any more: the next command's step fades, and what was not learnt yet is
+    /// forgotten.
     pub(crate) fn leave(&mut self) {
         self.memory.weight.leave();
         self.soften();

@@ -44,8 +44,8 @@ impl<T: Real> Weight<T> {
         self.flown
     }
 
-    /// The law has been left: what it has not flown long enough to know is forgotten. What was implied
-    /// while it failed is nothing to compare a load with.
+    /// The law has been left: what it has not flown long enough to know is forgotten. What was
+    /// implied while it failed is nothing to compare a load with.
     pub(crate) fn leave(&mut self) {
         if !self.is_known() {
             self.learning = T::zero();
