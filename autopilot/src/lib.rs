@@ -15,8 +15,9 @@
 //! The controller is a [`Rig`](rig::Rig) made of parameters; here stand only when it is stepped and
 //! what the link hears of it.
 //!
-//! [`Autopilot`] is the control side, which a timer's interrupt calls; [`Server`] is the link side. In lockstep neither reads a
-//! clock: the same frames give the same answers, bit by bit, however long they take to arrive.
+//! [`Autopilot`] is the control side, which a timer's interrupt calls; [`Server`] is the link side.
+//! In lockstep neither reads a clock: the same frames give the same answers, bit by bit, however
+//! long they take to arrive.
 #![no_std]
 
 mod control;

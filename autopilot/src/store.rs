@@ -2,10 +2,10 @@
 //! a checksum, so that a write that is cut short costs what it wrote and nothing else.
 //!
 //! A parameter that is set is appended as a record of its name's hash, its value and a checksum;
-//! the last good one counts. The items of a mission are appended word by word, and then their count,
-//! which makes what stands right before it the mission. When a page is more than half full at a
-//! start, what differs from the defaults is written to the other page, with mission and fence; its
-//! first record, its number, comes last and makes it the valid one. Until then the old page is.
+//! the last good one counts. The items of a mission are appended word by word, and then their
+//! count, which makes what stands right before it the mission. When a page is more than half full
+//! at a start, what differs from the defaults is written to the other page, with mission and fence;
+//! its first record, its number, comes last and makes it the valid one. Until then the old page is.
 //! Erasing, which may take seconds, so happens at a start alone.
 
 use crate::mission::{Item, Kind, WORDS};
@@ -171,8 +171,8 @@ impl<F: Flash> Store<F> {
         &self.flash
     }
 
-    /// Writes what differs from the defaults to the other page, with mission and fence, which is then
-    /// the valid one.
+    /// Writes what differs from the defaults to the other page, with mission and fence, which is
+    /// then the valid one.
     fn tidy(&mut self, settings: &Settings) -> Result<(), FlashFault> {
         let (old, places) = (self.page, Kind::ALL.map(|kind| self.place(kind)));
         self.page = 1 - self.page;

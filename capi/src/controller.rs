@@ -187,7 +187,8 @@ pub unsafe extern "C" fn slung_step(
     unsafe { slung_step_measured(controller, state, 0, uav, force, wanted, output) }
 }
 
-/// The same with what the UAV knows of itself, in the axes of `slung_frames`; any of it may be null.
+/// The same with what the UAV knows of itself, in the axes of `slung_frames`; any of it may be
+/// null.
 ///
 /// # Safety
 /// As [`slung_take_over`].
@@ -219,7 +220,8 @@ pub unsafe extern "C" fn slung_step_measured(
     code(step())
 }
 
-/// The step itself, and the body rate that it was made on. Out of line, and the answer too: neither's stack lies under the other's.
+/// The step itself, and the body rate that it was made on. Out of line, and the answer too:
+/// neither's stack lies under the other's.
 #[inline(never)]
 fn fly(
     instance: &mut Instance,

@@ -97,8 +97,8 @@ pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> 
     Ok(())
 }
 
-/// What a caller says in a structure that begins with its size, and `default` in the fields that the
-/// caller's header did not know of.
+/// What a caller says in a structure that begins with its size, and `default` in the fields that
+/// the caller's header did not know of.
 ///
 /// # Errors
 /// As [`write_sized`].

@@ -117,9 +117,9 @@ pub unsafe extern "C" fn slung_route_build(
         };
         // The waypoints are read into the last of the knots' room.
         let free = room[0].checked_sub(count).ok_or_else(|| refused(&RouteError::Knots))?;
-        // SAFETY: `count` elements from `free` on lie within the knots' room, and a waypoint fits that
-        // of a knot in size and alignment; each is written before it is read. Knots and runs are
-        // written before references to them are made, so whatever lay there does no harm.
+        // SAFETY: `count` elements from `free` on lie within the knots' room, and a waypoint fits
+        // that of a knot in size and alignment; each is written before it is read. Knots and runs
+        // are written before references to them are made, so whatever lay there does no harm.
         let (read, knots, runs) = unsafe {
             let read = knots.add(free).cast::<Waypoint<f32>>();
             for index in 0..count {

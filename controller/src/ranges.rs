@@ -24,8 +24,8 @@ pub const PAYLOAD_BANDWIDTH: Range = Range::new("payload_bandwidth", 0.0, 100.0,
 /// [`ObserverParams::along_bandwidth`](crate::ObserverParams::along_bandwidth), rad/s; 0 is
 /// `payload_bandwidth`.
 pub const ALONG_BANDWIDTH: Range = Range::new("along_bandwidth", 0.0, 100.0, 0.0);
-/// [`ObserverParams::cable_stiffness`](crate::ObserverParams::cable_stiffness), N; 0 is a cable that
-/// does not stretch.
+/// [`ObserverParams::cable_stiffness`](crate::ObserverParams::cable_stiffness), N; 0 is a cable
+/// that does not stretch.
 pub const CABLE_STIFFNESS: Range = Range::new("cable_stiffness", 0.0, 1e8, 0.0);
 /// [`ObserverParams::rod_bandwidth`](crate::ObserverParams::rod_bandwidth), rad/s.
 pub const ROD_BANDWIDTH: Range = Range::new("rod_bandwidth", 0.0, 100.0, 4.0);

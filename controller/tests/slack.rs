@@ -370,8 +370,8 @@ fn a_take_off_without_navigation_is_refused_in_words() {
     assert_eq!(flight.step(Request::Hold).mode, Mode::TakeOff);
 }
 
-/// A cable that is told too long seems slack: it holds, and says why. Told a little too short or too
-/// long it flies.
+/// A cable that is told too long seems slack: it holds, and says why. Told a little too short or
+/// too long it flies.
 #[test]
 fn a_cable_of_another_length_than_told_is_flown_or_refused_in_words() {
     for (share, flies) in [(0.9, true), (1.08, true), (1.15, false)] {

@@ -89,8 +89,8 @@ fn hours_of_hovering() {
     }
     eprintln!("least pivots {worst:?}, off {off} m, rod {swing} rad");
     assert!(worst[0] > 0.0 && worst[1] > 0.0, "{worst:?}");
-    // Five of the deviations that each filter has of itself, 8 mm and 0.8°: of a day's 8,640 samples
-    // none is likely to be beyond.
+    // Five of the deviations that each filter has of itself, 8 mm and 0.8°: of a day's 8,640
+    // samples none is likely to be beyond.
     assert!(off < 0.04, "{off}");
     assert!(swing < 0.07, "{swing}");
 }

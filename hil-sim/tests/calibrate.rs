@@ -93,8 +93,8 @@ fn what_was_hidden_is_found() {
     for line in &found {
         println!("{line}");
     }
-    // Within four of its own deviations, and as near as its use asks: a quarter of drag wrong is half
-    // a degree of rod.
+    // Within four of its own deviations, and as near as its use asks: a quarter of drag wrong is
+    // half a degree of rod.
     for (key, truth, share) in [
         ("actuators.thrust_scale", THRUST, 0.01),
         ("estimator.uav_drag_area", UAV_AREA, 0.2),
@@ -108,8 +108,8 @@ fn what_was_hidden_is_found() {
         assert!(off < 4.0 * found.deviation.max(0.25 * share * truth), "{key}: {found}");
         assert!(found.doubt.is_none(), "{found}");
     }
-    // A law that damps the swing leaves little of it: a guess no better than it says, and the advice
-    // to measure.
+    // A law that damps the swing leaves little of it: a guess no better than it says, and the
+    // advice to measure.
     let length = number(&found, "vehicle.rod_length");
     assert!((length.value - CABLE).abs() < 4.0 * length.deviation, "{length}");
     assert!(length.doubt.is_some_and(|doubt| doubt.contains("measure")), "{length}");

@@ -90,7 +90,8 @@ fn flown(scenario: &Scenario, run: u64) -> (End, Vec<Mode>, f64, f64) {
         }
         let bodies = moment.body.bodies();
         let line = bodies.position - bodies.uav_position;
-        // Within a thousandth of its length, which a load that falls off exceeds, and off the ground.
+        // Within a thousandth of its length, which a load that falls off exceeds, and off the
+        // ground.
         let is_taut = (line.norm() / scenario.vehicle.rod_length - 1.0).abs() < 1e-3 && bodies.position.z < -0.2;
         taut_from_s = if is_taut { taut_from_s.min(moment.t_s) } else { f64::INFINITY };
         let found = sight.estimate().expect("it has seen").state;

@@ -12,8 +12,8 @@ use hil_sim::world::Seed;
 const STANDING: &str = "{ position = [0.8, 0.0, 0.0], uav_position = [0.0, 0.0, 0.0], standing = true }";
 const HANGING: &str = "{ position = [0.0, 0.0, -6.0] }";
 
-/// The paper's vehicle with 2 m of cable, as it `begins`, over such `ground`; `more` are keys before
-/// all tables.
+/// The paper's vehicle with 2 m of cable, as it `begins`, over such `ground`; `more` are keys
+/// before all tables.
 fn text(begins: &str, ground: &str, requests: &str, more: &str) -> String {
     format!(
         r#"
@@ -88,8 +88,8 @@ fn a_mission_goes_off_the_ground_along_the_path_and_back() {
     }
 }
 
-/// Whenever it is asked to land, it stands in the end: from every moment of a take-off, and from the
-/// way to the path and along it.
+/// Whenever it is asked to land, it stands in the end: from every moment of a take-off, and from
+/// the way to the path and along it.
 #[test]
 fn a_landing_may_be_asked_for_at_any_moment() {
     for at_s in [1.5_f64, 3.0, 5.0, 6.5, 7.5, 9.0, 13.0, 15.0, 20.0, 28.0] {
@@ -133,9 +133,9 @@ fn it_lands_softly_whatever_the_cable_the_ground_and_the_sensors_do() {
     }
 }
 
-/// A load that stays caught on its way down keeps the UAV in the air, by its cable in the end, be it
-/// known by its own navigation or by the rod alone, and be the load seen or not. That is no landing:
-/// the rotors go on, the vehicle holds and says why, and it lands once the load is free.
+/// A load that stays caught on its way down keeps the UAV in the air, by its cable in the end, be
+/// it known by its own navigation or by the rod alone, and be the load seen or not. That is no
+/// landing: the rotors go on, the vehicle holds and says why, and it lands once the load is free.
 #[test]
 fn a_load_that_is_caught_ends_in_hold_and_not_with_rotors_off() {
     const AGAIN: &str = r#"{ at_s = 75.0, do = "hold" }, { at_s = 76.0, do = "land" }"#;
@@ -325,8 +325,8 @@ fn what_is_asked_for_is_checked() {
     assert!(error("controller = { parameters = { VEH_M_LOAD = 1.0 } }").contains("VEH_M_LOAD"));
 }
 
-/// Loads on 10 to 12 m of rope that gusts carried half a metre to a metre away, while the UAV itself
-/// stayed where it was. What is left is the faster part of the gusts.
+/// Loads on 10 to 12 m of rope that gusts carried half a metre to a metre away, while the UAV
+/// itself stayed where it was. What is left is the faster part of the gusts.
 #[test]
 fn a_load_on_a_long_rope_is_set_down_in_its_place_in_gusts() {
     let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();

@@ -1,4 +1,5 @@
-//! What gusts do to a vehicle whose actuators are late or slow: told, they cost no more than untold.
+//! What gusts do to a vehicle whose actuators are late or slow: told, they cost no more than
+//! untold.
 
 use hil_sim::describe::scenario::Scenario;
 use hil_sim::fly::flight::Control;

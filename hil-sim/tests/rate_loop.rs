@@ -6,7 +6,8 @@ use hil_sim::fly::flight::{Control, End, Entry, Plan, fly};
 use hil_sim::fly::pilot::Pilot;
 use hil_sim::world::Seed;
 
-/// A common autopilot: 100 setpoints a second that act 20 ms late, motors of 30 ms, a loop of 30 ms.
+/// A common autopilot: 100 setpoints a second that act 20 ms late, motors of 30 ms, a loop of 30
+/// ms.
 fn scenario(path: &str, initial: &str, more: &str, rate_loop: &str) -> Scenario {
     let text = format!(
         r#"

@@ -78,8 +78,8 @@ fn the_estimate_is_replayed_from_the_motion_of_the_uav() {
     let outcome = replay(scenario, &bytes, &Part { from_s: Some(10.0), ..Part::default() }).unwrap();
     let found = outcome.flight.replayed.unwrap();
     assert_eq!((found.given, found.unsaid.len()), ("the estimate", 0));
-    // Readings of 2 ms every 10 ms, and a rod that was told to hang: some degrees until it is found,
-    // then what a filter knows of a load whose wind it has to find.
+    // Readings of 2 ms every 10 ms, and a rod that was told to hang: some degrees until it is
+    // found, then what a filter knows of a load whose wind it has to find.
     assert!(found.rod_deg.unwrap().rms < 3.0, "{found:?}");
     for sample in outcome.flight.log.iter().filter(|sample| sample.t_s > 10.0 && sample.logged.is_some()) {
         let (seen, x) = (sample.seen.unwrap(), &sample.x);

@@ -142,8 +142,8 @@ fn distance_is_that_of_the_nearest_leg() {
     }
 }
 
-/// Load, UAV and cable, the last two 2 m above the first and beside it in bends, are kept from every
-/// edge by the margin; who does not keep it is named with the leg.
+/// Load, UAV and cable, the last two 2 m above the first and beside it in bends, are kept from
+/// every edge by the margin; who does not keep it is named with the leg.
 #[test]
 fn fences_hold_for_load_uav_and_cable() {
     let breaches = |fence: Value| {

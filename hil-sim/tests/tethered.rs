@@ -264,8 +264,8 @@ fn a_slide_is_as_long_as_coulombs_friction_makes_it() {
     assert!(body.bodies().velocity.amax() < 1e-6);
 }
 
-/// On a slope, tan θ: what friction holds creeps down at v_0 tan θ/√(μ² − tan² θ); where it does not
-/// hold, energy goes into friction alone. On its box the payload stands that much higher.
+/// On a slope, tan θ: what friction holds creeps down at v_0 tan θ/√(μ² − tan² θ); where it does
+/// not hold, energy goes into friction alone. On its box the payload stands that much higher.
 #[test]
 fn a_slope_holds_what_friction_holds() {
     let slope = [0.3_f64, -0.4];

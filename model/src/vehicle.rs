@@ -131,8 +131,8 @@ impl<T: Real> Vehicle<T> {
     }
 
     /// Takes all mass for `share` of what it is `told`, on the same UAV: what M stands in moves,
-    /// [`params`](Self::params) stay. Along the rod a thrust of 1/`share` of what was told looks the
-    /// same.
+    /// [`params`](Self::params) stay. Along the rod a thrust of 1/`share` of what was told looks
+    /// the same.
     #[inline(always)]
     pub fn weigh(&mut self, told: &Self, share: T) {
         let inverse = T::one() / share;

@@ -88,8 +88,8 @@ impl World {
         self.world.body().energy()
     }
 
-    /// What the instruments give at the end of this period, as [`crate::estimator`] takes it. Once a
-    /// period.
+    /// What the instruments give at the end of this period, as [`crate::estimator`] takes it. Once
+    /// a period.
     fn instruments<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let readings = self.instruments.read(&self.world);
         let told = PyDict::new(py);

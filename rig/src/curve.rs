@@ -45,7 +45,8 @@ const fn vector(
     entries
 }
 
-/// `<name><harmonic>_<axis>`, all zero but the first harmonic's component along `axis`, which is 5 m.
+/// `<name><harmonic>_<axis>`, all zero but the first harmonic's component along `axis`, which is 5
+/// m.
 const fn amplitudes(name: &str, field: &'static str, axis: usize, text: &'static str) -> [Entry<f64>; AMPLITUDES] {
     let mut entries = [Entry::real("X", field, "m", 0.0, FAR, text); AMPLITUDES];
     let mut index = 0;

@@ -133,8 +133,8 @@ impl<T: Real> ScalarField<T> for NoFormula {
 /// The path that `parameters` describe.
 ///
 /// # Errors
-/// What curve or profile refuse, by the parameter's name where it is one parameter's value; a route,
-/// which has no parameters.
+/// What curve or profile refuse, by the parameter's name where it is one parameter's value; a
+/// route, which has no parameters.
 pub fn path<T: Real, F, G, const K: usize, S>(
     parameters: &Parameters<T>,
 ) -> Result<AnyPath<T, F, G, K, S>, OutOfRange<T>> {

@@ -170,8 +170,8 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
         either!(&mut self.law, supervisor => supervisor.start_from(state, applied))
     }
 
-    /// Wishes for another factor of the path's speed, which changes smoothly: 1 flies the prescribed
-    /// speed, 0 stops, less goes back. The tracking law has none.
+    /// Wishes for another factor of the path's speed, which changes smoothly: 1 flies the
+    /// prescribed speed, 0 stops, less goes back. The tracking law has none.
     pub fn set_speed_factor(&mut self, factor: T) {
         match &mut self.law {
             Law::Follow(supervisor) => supervisor.law_mut().set_speed_factor(factor),

@@ -47,8 +47,8 @@ pub(crate) fn time_constants<T: Real>(parameters: &Parameters<T>) -> Vector3<T> 
 
 impl<T: Real, P: controller::Path<T>, A: controller::Actuation<T>> Rig<T, P, A> {
     /// The last step's command as an inner rate loop's setpoint, at the
-    /// [body rate](controller::Measured::body_rate) it was made on, rad/s. Where none is known it is
-    /// to stop turning.
+    /// [body rate](controller::Measured::body_rate) it was made on, rad/s. Where none is known it
+    /// is to stop turning.
     #[must_use]
     pub fn rate_setpoint(&self, body_rate: Option<Vector3<T>>) -> RateSetpoint<T> {
         let Some(body_rate) = body_rate else {

@@ -142,7 +142,8 @@ struct Field {
     random: Stream,
     station: Station,
     scenario: Scenario,
-    /// Of the flight program's N in the world's: where it is told to be, or where the first fix was.
+    /// Of the flight program's N in the world's: where it is told to be, or where the first fix
+    /// was.
     origin: Vector3<f64>,
     /// EST_LOAD.
     source: f32,

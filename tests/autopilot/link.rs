@@ -240,8 +240,8 @@ fn an_estimator_that_has_stopped_gives_no_states() {
         station.autopilot.tick();
         (station.autopilot.mode(), station.news())
     };
-    // The first of them is new; the last two tenths of a second are none, of which the model carries
-    // one.
+    // The first of them is new; the last two tenths of a second are none, of which the model
+    // carries one.
     for sequence in 1..50 {
         assert_eq!(again(sequence), (Mode::Hold, vec![]), "{sequence}");
     }

@@ -1,5 +1,5 @@
-//! Missions by MAVLink's protocol: what is sent up is kept to the bit, whatever the line loses; what
-//! makes no route is refused in words; and what is kept is flown.
+//! Missions by MAVLink's protocol: what is sent up is kept to the bit, whatever the line loses;
+//! what makes no route is refused in words; and what is kept is flown.
 
 use autopilot::{Autopilot, Boot, Item, Kind, Memory, Setting};
 use controller::{Command, Mode, State, Vector3};
@@ -69,8 +69,8 @@ impl Lossy {
     }
 }
 
-/// Uploads as stations do: the count again, and the last item again, where no answer comes for half a
-/// second. The outcome, and what was said.
+/// Uploads as stations do: the count again, and the last item again, where no answer comes for half
+/// a second. The outcome, and what was said.
 fn upload(
     station: &mut Station,
     items: &[MISSION_ITEM_INT_DATA],
@@ -566,7 +566,8 @@ fn a_fence_is_kept_before_a_flight_and_in_it() {
     let mut station = station();
     assert_eq!(upload(&mut station, &items, kind, &mut Lossy::none()), (KEPT as u8, vec![]));
     assert_eq!(bits_of(&download(&mut station, kind, &mut Lossy::none())), bits_of(&items));
-    // 31 m is outside, and so is 29.5 m, with a metre's margin; a leg to (24, 4) goes into the keep-out.
+    // 31 m is outside, and so is 29.5 m, with a metre's margin; a leg to (24, 4) goes into the
+    // keep-out.
     let route = |last: [f32; 3]| [waypoint([0.0, 0.0, -10.0]), waypoint([10.0, 0.0, -10.0]), waypoint(last)];
     for (last, what) in [
         ([29.5, 0.0, -10.0], Some("item 2: the load too near the fence")),
@@ -645,8 +646,8 @@ fn the_way_to_a_route_keeps_the_fence_or_is_refused() {
     }
 }
 
-/// A point's distance from a polygon's edge or a circle's, on the right side, by sampling the edge: not
-/// as the flight program finds it.
+/// A point's distance from a polygon's edge or a circle's, on the right side, by sampling the edge:
+/// not as the flight program finds it.
 fn distance(corners: &[[f32; 2]], circle: Option<([f32; 2], f32)>, is_inside: bool, p: Vector3<f64>) -> f64 {
     let (within, away) = match circle {
         Some((center, radius)) => {
@@ -702,8 +703,8 @@ fn random_missions_stay_within_random_fences_or_are_refused_by_their_leg() {
             continue;
         }
         kept += 1;
-        // The legs are straight; the UAV and the cable lean by the acceleration, at most 1 m/s² and its
-        // overshoot of 10 %.
+        // The legs are straight; the UAV and the cable lean by the acceleration, at most 1 m/s² and
+        // its overshoot of 10 %.
         let legs = route.windows(2).flat_map(|leg| {
             let [a, b] = [&leg[0], &leg[1]]
                 .map(|item| Vector3::new(f64::from(item.x) * 1e-4, f64::from(item.y) * 1e-4, f64::from(item.z)));

@@ -238,8 +238,8 @@ fn a_page_full_of_missions_is_said_and_tidied_up() {
     }
 }
 
-/// Power fails after every number of bytes in turn: at the next start there is the mission before or
-/// the one that was being written, whole.
+/// Power fails after every number of bytes in turn: at the next start there is the mission before
+/// or the one that was being written, whole.
 #[test]
 fn power_may_fail_in_the_middle_of_a_mission() {
     for before in [0, 2, 5] {

@@ -30,8 +30,8 @@ pub fn scenario() -> Scenario {
     Scenario::parse("route", SCENARIO).expect("a scenario")
 }
 
-/// How near to a stop the load is at rest, m: at 10 mm/s, which the stop's rate of 0.5/s makes 20 mm
-/// away, and a millimetre.
+/// How near to a stop the load is at rest, m: at 10 mm/s, which the stop's rate of 0.5/s makes 20
+/// mm away, and a millimetre.
 const STOPS: f64 = 0.021;
 
 /// Thrusts, torques and ζ by their bits; how near the route passes the smooth point, m; and the

@@ -76,8 +76,8 @@ impl Answers for Watched {
     }
 }
 
-/// A flight of a built-in route in gusts: root mean square of d_C from joining on, m, and the largest
-/// step of the parameter, in spans.
+/// A flight of a built-in route in gusts: root mean square of d_C from joining on, m, and the
+/// largest step of the parameter, in spans.
 fn fly(name: &str, run: u64) -> (f64, f64) {
     let (_, text) = ROUTES.iter().find(|(known, _)| *known == name).expect("it is built in");
     let scenario = Scenario::parse(name, &format!("{text}{AIR}")).unwrap_or_else(|error| panic!("{error}"));

@@ -1,4 +1,5 @@
-//! `cargo xtask dist`: everything that others install, into dist/, with what they have to know of it.
+//! `cargo xtask dist`: everything that others install, into dist/, with what they have to know of
+//! it.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

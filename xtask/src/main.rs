@@ -25,8 +25,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Measures the control step on the emulated Cortex-M4F and M7 in instructions, and in cycles by
-    /// published timings, and proves that host and target agree bit for bit.
+    /// Measures the control step on the emulated Cortex-M4F and M7 in instructions, and in cycles
+    /// by published timings, and proves that host and target agree bit for bit.
     #[command(after_help = "Fails if a number exceeds firmware/bench/expected.json or a proof does not hold.\n\n\
         Examples:\n  cargo xtask target\n  cargo xtask target --json\n  cargo xtask target --refresh")]
     Target {
@@ -44,15 +44,16 @@ enum Command {
     #[command(after_help = "Needs binutils for the machine (Debian: binutils-arm-none-eabi).\n\n\
         Examples:\n  cargo xtask object\n  cargo xtask object host cortex-m7\n  cargo xtask object --lean cortex-m4f")]
     Object {
-        /// Leave out all curves but the circle, the tracking law, and what parameters mean in words.
+        /// Leave out all curves but the circle, the tracking law, and what parameters mean in
+        /// words.
         #[arg(long)]
         lean: bool,
         /// What for.
         #[arg(default_values = ["host", "cortex-m4f", "cortex-m7"])]
         machines: Vec<object::Machine>,
     },
-    /// Builds all that others install into dist/: objects, Python wheel, firmware images; with bills
-    /// of materials, licences and checksums.
+    /// Builds all that others install into dist/: objects, Python wheel, firmware images; with
+    /// bills of materials, licences and checksums.
     #[command(after_help = "Needs maturin (`pip install maturin`), and what `object` and `thumb` need.\n\n\
         Examples:\n  cargo xtask dist\n  (cd dist && sha256sum --check SHA256SUMS)")]
     Dist,

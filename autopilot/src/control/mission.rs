@@ -167,8 +167,8 @@ impl Autopilot {
         Ok(())
     }
 
-    /// Flies the route at `speed`, m/s, from now on, where its leg allows that; as it is laid, where
-    /// that is negative.
+    /// Flies the route at `speed`, m/s, from now on, where its leg allows that; as it is laid,
+    /// where that is negative.
     ///
     /// # Errors
     /// Why not now.

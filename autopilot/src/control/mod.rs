@@ -10,9 +10,9 @@
 //! Where nothing was asked for, or to idle, or where the state says that it stands, the first good
 //! state finds a vehicle on the ground, whose rotors turn at their least thrust. Where more was, it
 //! finds one in flight, which is taken over from hover thrust and does that. From there on every
-//! control period steps the supervisor (`controller::Supervisor`, which has the modes' table) on the
-//! newest state: a missing one is passed on as absent; the supervisor goes on by its model, then
-//! sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
+//! control period steps the supervisor (`controller::Supervisor`, which has the modes' table) on
+//! the newest state: a missing one is passed on as absent; the supervisor goes on by its model,
+//! then sinks or cuts. What the pilot asks for ([`Autopilot::request`]) lasts until disarming.
 
 mod arming;
 mod mission;

@@ -152,7 +152,8 @@ impl Autopilot {
         }
         let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
         let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen | Absence::Unseen(_)));
-        // To an estimator the load is out of sight whenever it stands, and back in sight when it hangs.
+        // To an estimator the load is out of sight whenever it stands, and back in sight when it
+        // hangs.
         let is_nothing_wrong = fault == Some(Fault::NoState)
             && match self.absence {
                 Some(Absence::Unseen(Unseen::Rod(_))) => !matches!(mode, Mode::Join | Mode::Follow | Mode::Hold),
@@ -218,9 +219,9 @@ impl Autopilot {
         Ok(())
     }
 
-    /// What is seen by a frame, with what else is known of the UAV and, by an estimator, of the load;
-    /// and why that is not known. In lockstep without an estimator the same frames have the same
-    /// answers, whatever comes between them.
+    /// What is seen by a frame, with what else is known of the UAV and, by an estimator, of the
+    /// load; and why that is not known. In lockstep without an estimator the same frames have the
+    /// same answers, whatever comes between them.
     fn see(&mut self, seen: Seen) -> (Seen, Option<Unseen>) {
         let thrust = self.rig.as_ref().map(|rig| rig.applied().thrust);
         // Whether it stands or flies, the first state says, though nothing is known of the rod.

@@ -90,8 +90,8 @@ impl Fence {
         self.regions(keeping.up).all(|region| region.breach(way, keeping.margin).is_none())
     }
 
-    /// Where `route`, flown as it is laid by a load on a cable of `length` m, first does not keep the
-    /// margin: its run and span, and what does not.
+    /// Where `route`, flown as it is laid by a load on a cable of `length` m, first does not keep
+    /// the margin: its run and span, and what does not.
     pub fn breach<S: Table<f32>>(
         &self,
         route: &mut Route<f32, S>,
@@ -131,7 +131,8 @@ impl Fence {
 /// Looks at the vehicle for each span.
 const PARTS: usize = 2;
 
-/// The load at the route's place, and the UAV above it, whose cable carries the load's acceleration.
+/// The load at the route's place, and the UAV above it, whose cable carries the load's
+/// acceleration.
 fn bodies<S: Table<f32>>(route: &Route<f32, S>, length: f32, gravity: f32) -> [Vector3<f32>; 2] {
     let (load, acceleration) = (route.point(), route.acceleration());
     let pull = acceleration - Vector3::new(0.0, 0.0, gravity);

@@ -35,8 +35,8 @@ pub type Items = heapless::Vec<Item, ITEMS>;
 /// The path that the program flies, of parameters or of a mission.
 pub type Flown<S = Laid> = AnyPath<f32, NoFormula, NoFormula, HARMONICS, S>;
 
-/// Memory for a route of `KNOTS` knots, 60 bytes each: some 10 a waypoint, and as many more for each
-/// doubling of a leg's length.
+/// Memory for a route of `KNOTS` knots, 60 bytes each: some 10 a waypoint, and as many more for
+/// each doubling of a leg's length.
 #[derive(Debug)]
 pub struct Memory<const KNOTS: usize> {
     knots: [Knot<f32>; KNOTS],
@@ -229,8 +229,8 @@ impl Mission {
         lists.coming.push(item).map_err(|_| Refusal::no_space(format_args!("mission: too many items")))
     }
 
-    /// Keeps the items that have come in place of what there was. Returns what there is to say about
-    /// it.
+    /// Keeps the items that have come in place of what there was. Returns what there is to say
+    /// about it.
     ///
     /// # Errors
     /// They make no route; nothing has changed.
@@ -330,15 +330,16 @@ impl Mission {
         Err(Refusal::invalid(format_args!("item {item}: {what} too near the fence")))
     }
 
-    /// Whether load, UAV and cable keep half of the margin from the fence: the other half is what it
-    /// takes to stop.
+    /// Whether load, UAV and cable keep half of the margin from the fence: the other half is what
+    /// it takes to stop.
     pub(crate) fn keeps_fence(&self, load: &Vector3<f32>, uav: &Vector3<f32>, settings: &Settings) -> bool {
         let Some(lists) = &self.lists else { return true };
         lists.regions.keeps(&[*load, *uav], &keeping(settings, 0.5))
     }
 
-    /// What of load, UAV and cable does not keep the margin on the straight way between two places of
-    /// load and UAV. A cable that is moved without turning is bounded by those ways and its two ends.
+    /// What of load, UAV and cable does not keep the margin on the straight way between two places
+    /// of load and UAV. A cable that is moved without turning is bounded by those ways and its two
+    /// ends.
     pub(crate) fn way_breach(
         &self,
         from: &[Vector3<f32>; 2],

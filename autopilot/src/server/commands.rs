@@ -198,8 +198,8 @@ fn metadata() -> MavMessage {
 
 /// What the program is and can do.
 fn version() -> MavMessage {
-    /// Fences, MAVLink 2, file transfer, integers in PARAM_SET as their bytes, and missions. Signing
-    /// would be a bit here.
+    /// Fences, MAVLink 2, file transfer, integers in PARAM_SET as their bytes, and missions.
+    /// Signing would be a bit here.
     const CAPABILITIES: u64 = 16384 | 8192 | 32 | 16 | 4;
     let number = |text: &str| text.parse::<u32>().unwrap_or_default();
     let [major, minor, patch] =

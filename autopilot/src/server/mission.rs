@@ -1,9 +1,9 @@
 //! MAVLink's mission protocol: missions and fences up and down, one item a message.
 //!
 //! An upload is kept when its last item has come and all of them make a route; until then what was
-//! kept before is. The controller asks for each item, again where none has come for a while, so that
-//! neither a lost question nor a lost item ends the upload. A download has no state here: what is
-//! asked for is sent.
+//! kept before is. The controller asks for each item, again where none has come for a while, so
+//! that neither a lost question nor a lost item ends the upload. A download has no state here: what
+//! is asked for is sent.
 
 use link::dialect::{MissionState as MissionStateNumber, *};
 use link::{Address, Home, MavMessage};

@@ -24,9 +24,9 @@ pub struct Region<'a, T> {
 }
 
 impl<T: Real> Region<'_, T> {
-    /// How much of `margin` the straight way `from` to `to` does not keep: its distance from the edge
-    /// on the right side, m, negative on the wrong one, where that is at most `margin`. On the wrong
-    /// side it is no farther than the way's nearest end is from the edge.
+    /// How much of `margin` the straight way `from` to `to` does not keep: its distance from the
+    /// edge on the right side, m, negative on the wrong one, where that is at most `margin`. On the
+    /// wrong side it is no farther than the way's nearest end is from the edge.
     ///
     /// ```
     /// use controller::{FenceEdge, FenceRegion, Vector3};

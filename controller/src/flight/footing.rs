@@ -2,8 +2,8 @@
 //!
 //! Something carries it, or it would be where it should be: the ground, or, where its load has been
 //! caught on the way, the cable, from which it then hangs below its load. Where the load is seen
-//! elsewhere it stands. Where not, a UAV that stands can't turn: it is asked to, one way and then the
-//! other, since a constant torque may stop it in one of them.
+//! elsewhere it stands. Where not, a UAV that stands can't turn: it is asked to, one way and then
+//! the other, since a constant torque may stop it in one of them.
 
 use model::Real;
 

@@ -16,8 +16,9 @@ const ROOM: f64 = 0.6;
 const AROUND: f64 = 0.4;
 /// Nearer to above the load than this, m, aside is forward.
 const ABOVE: f64 = 0.05;
-/// A load stands when its speed has been below this share of the descent's, for so long, s, after it
-/// sank at that share; or, where it has not sunk, with this share of its weight gone from the pull.
+/// A load stands when its speed has been below this share of the descent's, for so long, s, after
+/// it sank at that share; or, where it has not sunk, with this share of its weight gone from the
+/// pull.
 const STILL: f64 = 0.2;
 const TOUCHED: f64 = 0.05;
 const SUNK: f64 = 0.4;
@@ -45,8 +46,8 @@ pub(crate) struct Landing<T> {
     /// The load has sunk, and for how long it has stood still, s.
     has_sunk: bool,
     still: T,
-    /// The UAV's reckoned velocity along n3, m/s, and from when it was set down the level pull, m/s²,
-    /// and the rod's angle from the vertical, rad.
+    /// The UAV's reckoned velocity along n3, m/s, and from when it was set down the level pull,
+    /// m/s², and the rod's angle from the vertical, rad.
     falling: T,
     wind: Vector3<T>,
     from: T,
@@ -80,8 +81,8 @@ impl<T: Real> Landing<T> {
 
     /// By its own navigation: the velocity, m/s, at which the UAV goes for the coming `period`, s.
     /// Once the cable is slack, it goes aside as fast as it sinks, so that the cable stays slack,
-    /// until it is far enough from the `load`, m, or has gone as far; not where it may be carried by
-    /// the ground. As far aside as wanted is no more than a part of the cable's `length`, m.
+    /// until it is far enough from the `load`, m, or has gone as far; not where it may be carried
+    /// by the ground. As far aside as wanted is no more than a part of the cable's `length`, m.
     #[inline(never)]
     pub(crate) fn velocity(
         &mut self,
@@ -112,8 +113,8 @@ impl<T: Real> Landing<T> {
     }
 
     /// By the rod alone, a `period` (s) on: what to fly once the load stands. The last `thrust` (N)
-    /// acted along −b3; `usual` (N) hung from the UAV before, and `down` (N) does now; `pull` (m/s²)
-    /// is observed.
+    /// acted along −b3; `usual` (N) hung from the UAV before, and `down` (N) does now; `pull`
+    /// (m/s²) is observed.
     #[inline(never)]
     pub(crate) fn around(
         &mut self,

@@ -68,8 +68,8 @@ pub enum Fault {
     PayloadLost,
     /// Load, rod and UAV are measured where no cable of this length could have them together.
     Contradiction,
-    /// A landing UAV was carried by what it does not stand on: by its cable, with the load caught on
-    /// the way down.
+    /// A landing UAV was carried by what it does not stand on: by its cable, with the load caught
+    /// on the way down.
     Caught,
 }
 
@@ -109,8 +109,8 @@ pub struct Policy<T> {
 
 impl<T: Real> Default for Policy<T> {
     /// 0.1 s, then sinking at 90 % of the hover thrust; back to the path after a calm second;
-    /// take-off at 0.4 m/s to a metre above the cable's length; landing at 0.4 m/s, 0.6 m beside the
-    /// load; lost below 30 %.
+    /// take-off at 0.4 m/s to a metre above the cable's length; landing at 0.4 m/s, 0.6 m beside
+    /// the load; lost below 30 %.
     fn default() -> Self {
         Self {
             coast: COAST.default(),
@@ -170,7 +170,8 @@ pub struct Measured<'a, T> {
 }
 
 impl<T: Real> Measured<'_, T> {
-    /// ω in body axes, rad/s, of the state, or else of the UAV; none where neither is to be trusted.
+    /// ω in body axes, rad/s, of the state, or else of the UAV; none where neither is to be
+    /// trusted.
     #[must_use]
     pub fn body_rate(&self) -> Option<Vector3<T>> {
         let state = self.state.filter(|state| state.check().is_ok()).map(|state| state.body_rate);

@@ -11,9 +11,9 @@ const BACK: f64 = 3.0;
 /// It pulls while no more has gone than this share of what a loss takes away.
 const GONE: f64 = 0.5;
 
-/// The watch on the payload: of all mass, what the observers imply against what they implied before.
-/// What is implied all the time is another thrust or another mass than was told; a payload is lost
-/// suddenly, and pulls no more.
+/// The watch on the payload: of all mass, what the observers imply against what they implied
+/// before. What is implied all the time is another thrust or another mass than was told; a payload
+/// is lost suddenly, and pulls no more.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Payload<T> {
     /// Share of all mass that is left when the payload counts as lost.
@@ -41,8 +41,8 @@ impl<T: Real> Payload<T> {
         (self.unloaded, self.pulling) = (T::zero(), T::zero());
     }
 
-    /// Whether it is lost, a `period` (s) later, with the `weight` implied then and the `usual` pull
-    /// along n3, N.
+    /// Whether it is lost, a `period` (s) later, with the `weight` implied then and the `usual`
+    /// pull along n3, N.
     #[inline]
     pub(crate) fn is_lost(&mut self, weight: &Weight<T>, usual: T, period: T) -> bool {
         if !(weight.is_known() && weight.change() < self.least) {

@@ -20,7 +20,8 @@ use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
 
 /// With more vertical acceleration than this, m/s², the load is falling or swings high. Hold, which
-/// stops both as hard as the rotors can, goes first: the path would be joined by as much of a dip, m.
+/// stops both as hard as the rotors can, goes first: the path would be joined by as much of a dip,
+/// m.
 const JOINING: f64 = 0.5;
 /// So far above its target, m, a landing UAV may stand already, and does not go aside.
 const CARRIED: f64 = 0.3;
@@ -70,15 +71,16 @@ const CALM_TILT: f64 = 0.95;
 /// Without it a rod beyond the envelope, as that of a vehicle which stands beside its load, leaves
 /// it idle, with the margin as its fault.
 /// Hold, landing and take-off fly the UAV itself and take the cable for a pull; without that
-/// navigation they take it for taut. A landing sets the load down, goes aside, and sets the UAV down
-/// beside it; without that navigation it keeps the cable taut and flies the UAV around the load, an
-/// arc of the cable's length, to the ground. Rotors go off once the UAV itself stands, which shows by
-/// its not turning when it is asked to. One that is carried and does not stand hangs from its cable,
-/// since the load has been *caught*: it holds until something else is asked for.
+/// navigation they take it for taut. A landing sets the load down, goes aside, and sets the UAV
+/// down beside it; without that navigation it keeps the cable taut and flies the UAV around the
+/// load, an arc of the cable's length, to the ground. Rotors go off once the UAV itself stands,
+/// which shows by its not turning when it is asked to. One that is carried and does not stand hangs
+/// from its cable, since the load has been *caught*: it holds until something else is asked for.
 ///
-/// From hold the path is joined at once if follow has just been asked for, the vehicle is inside its
-/// envelope and the load does not fall, and otherwise after [`Policy::calm`]. A fault whose rotors were cut is left by off alone. A payload that is lost keeps
-/// the vehicle in hold, until the cable has pulled for three seconds as it did before the loss.
+/// From hold the path is joined at once if follow has just been asked for, the vehicle is inside
+/// its envelope and the load does not fall, and otherwise after [`Policy::calm`]. A fault whose
+/// rotors were cut is left by off alone. A payload that is lost keeps the vehicle in hold, until
+/// the cable has pulled for three seconds as it did before the loss.
 ///
 /// Whatever bits come in, the command that goes out is finite and within the limits, its fault is
 /// typed, and nothing that came in stays: the next good state is flown on.
@@ -218,8 +220,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         Ok(())
     }
 
-    /// Starts on the path from where the vehicle flies, to which `applied` has been applied until now:
-    /// [`Mode::Follow`] without an approach, and without a bump.
+    /// Starts on the path from where the vehicle flies, to which `applied` has been applied until
+    /// now: [`Mode::Follow`] without an approach, and without a bump.
     ///
     /// # Errors
     /// As [`take_over`](Self::take_over).
@@ -241,8 +243,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     }
 
     /// The command for the coming hold. Call once every period, with what is measured now, a state
-    /// if there is one or all of [`Measured`], and what the pilot wants. Where the load is not known
-    /// but the UAV is, hold flies that after [`Policy::coast`].
+    /// if there is one or all of [`Measured`], and what the pilot wants. Where the load is not
+    /// known but the UAV is, hold flies that after [`Policy::coast`].
     #[inline]
     pub fn step<'a>(&mut self, measured: impl Into<Measured<'a, T>>, request: Request) -> Output<T> {
         let measured = measured.into();
@@ -298,8 +300,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         is_flying && is_taut && self.blind <= self.policy.coast
     }
 
-    /// A step on what the model makes of the last state. Its `fault` is this step's alone: states may
-    /// come at a lower rate than commands.
+    /// A step on what the model makes of the last state. Its `fault` is this step's alone: states
+    /// may come at a lower rate than commands.
     #[cold]
     fn carried(&mut self, fault: Fault, uav: Option<&Uav<T>>, specific: Option<Vector3<T>>) -> Option<Output<T>> {
         let state = self.may_carry().then(|| self.sampler.carry()).filter(|state| state.check().is_ok())?;
@@ -414,7 +416,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.hold(Some(state), &now, aim.as_ref())
     }
 
-    /// Where the rod is all that tells of the UAV: what to fly once a landing has set down the load.
+    /// Where the rod is all that tells of the UAV: what to fly once a landing has set down the
+    /// load.
     #[inline(never)]
     fn around(&mut self, state: &State<T>) -> Option<Aim<T>> {
         let vehicle = self.sampler.vehicle();

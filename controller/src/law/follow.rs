@@ -206,7 +206,8 @@ const AT_REST: f64 = 0.01;
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Follow<T, P> {
-    /// As they act: those of h1, h2 and h3 are raised by (11.5), and all are of Taylor coefficients.
+    /// As they act: those of h1, h2 and h3 are raised by (11.5), and all are of Taylor
+    /// coefficients.
     gains: Gains<T>,
     integral: [T; 3],
     /// The last outputs, error of yaw and answer, kept where they were made.

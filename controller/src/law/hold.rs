@@ -58,7 +58,8 @@ const ATTITUDE_GAIN: f64 = 64.0;
 const RATE_GAIN: f64 = 16.0;
 const YAW_RATE_GAIN: f64 = 3.0;
 
-/// What hangs from the UAV: L q and L q̇, m and m/s, and where in the wind it would hang at rest, m.
+/// What hangs from the UAV: L q and L q̇, m and m/s, and where in the wind it would hang at rest,
+/// m.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Swing<T> {
     offset: Vector3<T>,
@@ -95,7 +96,8 @@ pub(crate) struct Hold<T> {
 }
 
 impl<T: Real> Hold<T> {
-    /// For `vehicle`, from where the UAV is and as fast as it is, with what is known of the `swing`.
+    /// For `vehicle`, from where the UAV is and as fast as it is, with what is known of the
+    /// `swing`.
     #[inline(never)]
     pub(crate) fn from(vehicle: &Vehicle<T>, uav: &Uav<T>, swing: &Swing<T>) -> Self {
         let params = vehicle.params();
@@ -147,8 +149,8 @@ impl<T: Real> Hold<T> {
         self.target.z - uav.position.z
     }
 
-    /// The command at `uav` under a `pull` (m/s², per UAV mass) and with the `swing`, where the rod is
-    /// trusted, and the target one `period` (s) on, on its way to `velocity` (N, m/s).
+    /// The command at `uav` under a `pull` (m/s², per UAV mass) and with the `swing`, where the rod
+    /// is trusted, and the target one `period` (s) on, on its way to `velocity` (N, m/s).
     pub(crate) fn step(
         &mut self,
         vehicle: &Vehicle<T>,
@@ -231,8 +233,8 @@ impl<T: Real> Hold<T> {
 }
 
 impl<T: Real> Swing<T> {
-    /// Of the rod of `state`, where it hangs, under the `wind` d on the load, m/s². Along the rod d is
-    /// of another weight or thrust than told, too.
+    /// Of the rod of `state`, where it hangs, under the `wind` d on the load, m/s². Along the rod d
+    /// is of another weight or thrust than told, too.
     #[inline(never)]
     pub(crate) fn of(vehicle: &Vehicle<T>, state: &State<T>, wind: &Vector3<T>) -> Self {
         let length = vehicle.params().rod_length;

@@ -34,9 +34,9 @@ pub struct Ahead<T> {
 ///
 /// What every law shares, ζ, the observers and the commands on their way, is the
 /// [`Sampler`](crate::Sampler)'s, which lends it to one law at a time. Every period it asks the law
-/// for an [`answer`](Self::answer) with [`evaluate`](Self::evaluate), and where that flies, tells it so with
-/// [`accept`](Self::accept). A law that is [restarted](Self::restart) or [joins](Self::join)
-/// remembers nothing of before.
+/// for an [`answer`](Self::answer) with [`evaluate`](Self::evaluate), and where that flies, tells
+/// it so with [`accept`](Self::accept). A law that is [restarted](Self::restart) or
+/// [joins](Self::join) remembers nothing of before.
 pub trait Law<T: Real> {
     /// The outputs with their derivatives, ξ.
     type Xi: Copy;

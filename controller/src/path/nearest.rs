@@ -1,8 +1,8 @@
 //! The point of a curve nearest to the payload, followed along the payload's motion.
 //!
 //! The parameter σ(t) of the nearest point solves (p(t) − c(σ(t)))·c′(σ(t)) = 0. Order 0 is
-//! Newton's method on the Taylor polynomial of r·c′ that the last sample left; the others follow one
-//! by one, for each is linear in the newest coefficient of σ(t).
+//! Newton's method on the Taylor polynomial of r·c′ that the last sample left; the others follow
+//! one by one, for each is linear in the newest coefficient of σ(t).
 
 // As in series.rs: indices run over compile-time orders.
 #![allow(clippy::indexing_slicing, clippy::needless_range_loop)]

@@ -113,8 +113,8 @@ pub(crate) struct Actuators<T> {
     /// lag.
     applied: Command<T>,
     step: Command<T>,
-    /// What the mean over the law's look ahead has over what will act when the coming command begins
-    /// to: nothing without a lag.
+    /// What the mean over the law's look ahead has over what will act when the coming command
+    /// begins to: nothing without a lag.
     drift: Command<T>,
     delay: usize,
     /// A ring of the last commands; `newest` counts them, and the last one stands there.
@@ -217,8 +217,9 @@ impl<T: Real> Actuators<T> {
         self.lag.as_ref().map_or_else(|| self.sent(0), |lag| lag.arriving)
     }
 
-    /// What the mean from then to when the law's answer is for has over [`arriving`](Self::arriving),
-    /// as far as it is known before the coming command: nothing without a lag.
+    /// What the mean from then to when the law's answer is for has over
+    /// [`arriving`](Self::arriving), as far as it is known before the coming command: nothing
+    /// without a lag.
     #[inline]
     pub(crate) fn drift(&self) -> &Command<T> {
         &self.drift
@@ -246,8 +247,8 @@ impl<T: Real> Actuators<T> {
         self.delay.min(STEPS)
     }
 
-    /// A leg's length in periods and the mean of what acts in it; `acting` at its beginning, and then
-    /// at its end.
+    /// A leg's length in periods and the mean of what acts in it; `acting` at its beginning, and
+    /// then at its end.
     #[inline(never)]
     pub(crate) fn leg(&self, index: usize, acting: &mut Command<T>) -> (T, Command<T>) {
         // There is no leg without legs, which the compiler does not see.
@@ -261,8 +262,8 @@ impl<T: Real> Actuators<T> {
         (periods, sum.times(T::one() / periods))
     }
 
-    /// The mean over the period of the command sent `before` the last one; `acting` at its beginning,
-    /// and then at its end.
+    /// The mean over the period of the command sent `before` the last one; `acting` at its
+    /// beginning, and then at its end.
     // Apart: in its loop it would stand several times.
     #[inline(never)]
     fn pass(&self, acting: &mut Command<T>, before: usize) -> Command<T> {

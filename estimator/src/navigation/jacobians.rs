@@ -61,7 +61,8 @@ fn measured(
         Kind::Heading => only(state.attitude.m21.atan2(state.attitude.m11)),
         Kind::Attitude => {
             let turn = state.attitude * about.attitude.transpose();
-            // The sine's vector: to first order the angle's, and odd, so that its even orders vanish.
+            // The sine's vector: to first order the angle's, and odd, so that its even orders
+            // vanish.
             Vector3::new(turn.m32 - turn.m23, turn.m13 - turn.m31, turn.m21 - turn.m12) * 0.5
         }
     }

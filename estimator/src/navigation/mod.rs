@@ -4,8 +4,8 @@
 //! Fifteen error states around a [strapdown] integration. Fixes are late, so a [ring] remembers
 //! where the vehicle was. The cycle of 30 periods is the payload filter's: the
 //! [covariance](predict) moves in two of them, where the payload filter has nothing to do, and
-//! [scalars](aiding) and corrections have fourteen of the others, one a period. Kinds of measurements
-//! take turns, so that none that comes often keeps another from its own.
+//! [scalars](aiding) and corrections have fourteen of the others, one a period. Kinds of
+//! measurements take turns, so that none that comes often keeps another from its own.
 
 mod aiding;
 #[cfg(test)]

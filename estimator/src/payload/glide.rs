@@ -91,8 +91,8 @@ mod tests {
                 assert!((glide.rest - before - glide.rate * PERIOD).amax() < 1e-15);
                 fastest = fastest.max(glide.rate.x);
             }
-            // The critically damped rest (1 + t/τ) e^(−t/τ) has its steepest slope 1/(e τ) at τ, and
-            // is 5e-4 at 10 τ.
+            // The critically damped rest (1 + t/τ) e^(−t/τ) has its steepest slope 1/(e τ) at τ,
+            // and is 5e-4 at 10 τ.
             assert!((fastest * time / size - (-1.0_f64).exp()).abs() < 0.01, "{fastest}");
             assert!(glide.rest.amax() < 6e-4 * size, "{}", glide.rest);
         }

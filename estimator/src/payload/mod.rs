@@ -81,9 +81,9 @@ pub struct Estimate<T> {
 }
 
 impl<T: Real> Estimate<T> {
-    /// The UAV by navigation where it glides along with `state`: as a law is told it beside that. Of
-    /// a jump that the one has taken and the other has not, a supervisor would say that load and UAV
-    /// contradict each other.
+    /// The UAV by navigation where it glides along with `state`: as a law is told it beside that.
+    /// Of a jump that the one has taken and the other has not, a supervisor would say that load and
+    /// UAV contradict each other.
     #[must_use]
     pub fn beside(&self, uav: &Uav<T>) -> Uav<T> {
         let [position, velocity] = self.rest;
@@ -205,9 +205,9 @@ impl<T: Real> Payload<T> {
         self.covariance.full()
     }
 
-    /// A measurement of the load, `age` s old at the last [`step`](Self::step), compared with the rod
-    /// at once and taken in within a cycle. One that is not finite, or whose deviation is not positive, is ignored; so is any
-    /// while the cable is slack. Returns whether it counts.
+    /// A measurement of the load, `age` s old at the last [`step`](Self::step), compared with the
+    /// rod at once and taken in within a cycle. One that is not finite, or whose deviation is not
+    /// positive, is ignored; so is any while the cable is slack. Returns whether it counts.
     pub fn observe(&mut self, measurement: &LoadMeasurement<T>, age: T) -> bool {
         let (value, deviation) = match measurement {
             LoadMeasurement::Direction(value, deviation)

@@ -1,6 +1,7 @@
 //! How the errors of the payload filter spread: P ← Φ P Φᵀ + Q over a cycle Δt.
 //!
-//! Wind and residual are first-order Markov processes, the rest walks at random, and the rod swings:
+//! Wind and residual are first-order Markov processes, the rest walks at random, and the rod
+//! swings:
 //!
 //! ```text
 //! η̇ = ζ,   ζ̇ = δq̈_h of (2),   ẇ = −w/τ_w,   ṙ = −r/τ_r
@@ -28,8 +29,8 @@ pub(super) struct Spread<T> {
     kept: [T; 2],
     /// What it adds to the variances of wind, residual, offset, and of thrust scale and mass.
     added: [T; 4],
-    /// Variances beyond which offset, thrust scale and mass don't walk: nothing that is not heard of
-    /// grows for ever.
+    /// Variances beyond which offset, thrust scale and mass don't walk: nothing that is not heard
+    /// of grows for ever.
     most: [T; 3],
     /// q_rod² and (N_a/L)², times the step.
     rod: T,

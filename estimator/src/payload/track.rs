@@ -9,8 +9,8 @@
 //! o² = N_a/(σ √Δ)
 //! ```
 //!
-//! with f what air and a wrong rod add, and o where white noise of the acceleration and of places of
-//! deviation σ every Δ seconds weigh the same.
+//! with f what air and a wrong rod add, and o where white noise of the acceleration and of places
+//! of deviation σ every Δ seconds weigh the same.
 
 use model::{Real, Vector3, is_within};
 

@@ -8,7 +8,8 @@ use cortex_m_semihosting::{nr, syscall1};
 pub fn is_command_line(line: &[u8]) -> bool {
     let mut text = [0_u8; 16];
     let mut block = [text.as_mut_ptr() as usize, text.len()];
-    // SAFETY: the call writes into `text`, at most the length that it is told, and into `block`; both outlive it.
+    // SAFETY: the call writes into `text`, at most the length that it is told, and into `block`;
+    // both outlive it.
     let failed = unsafe { syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
     failed == 0 && text.strip_prefix(line).is_some_and(|rest| rest.first() == Some(&0))
 }

@@ -75,7 +75,8 @@ impl Case for LoadBehindNavigation {
             turned * (1.0 / Real::sqrt(turned.dot(&turned)))
         };
         let attitude = Matrix3::from_columns(&[column(Vector3::x()), column(Vector3::y()), column(Vector3::z())]);
-        // Within what navigation corrects from one period to the next: a jump has a cost of its own.
+        // Within what navigation corrects from one period to the next: a jump has a cost of its
+        // own.
         let (position, velocity) = (random.vector(0.02), random.vector(0.02));
         Motion { position, velocity, attitude, body_rate, specific_force }
     }

@@ -22,7 +22,8 @@ pub use random::Random;
 pub const STATES: usize = 1024;
 /// The first of them, for who can't wait for all.
 pub const FEW: usize = 32;
-/// Steps on each state: the first as after engaging, the second with a last command to predict from.
+/// Steps on each state: the first as after engaging, the second with a last command to predict
+/// from.
 pub const STEPS: usize = 2;
 
 /// A law on a path or reference, and the states it is tried on.

@@ -45,13 +45,13 @@ pub struct CampaignArguments {
     /// Fly this one flight again, with its full log.
     #[arg(long, value_name = "ROW", conflicts_with = "shard")]
     replay: Option<u64>,
-    /// Search for the smallest fault that fails, in place of flying all: from the nominal flight, or
-    /// from what flight ROW of the campaign met.
+    /// Search for the smallest fault that fails, in place of flying all: from the nominal flight,
+    /// or from what flight ROW of the campaign met.
     ///
     /// Nominal is zero where a range has it, else its middle; the size of a fault is the length of
-    /// the vector of its numbers, each 1 at the end of its range. Noise, gusts, choices and the place
-    /// on the path are those of flight ROW, or 0, in every flight. Writes hunt.json and a scenario
-    /// file for each find, which `hil-sim run` flies to the same end.
+    /// the vector of its numbers, each 1 at the end of its range. Noise, gusts, choices and the
+    /// place on the path are those of flight ROW, or 0, in every flight. Writes hunt.json and a
+    /// scenario file for each find, which `hil-sim run` flies to the same end.
     #[arg(long, value_name = "ROW", num_args = 0..=1, require_equals = true, conflicts_with_all = ["shard", "replay"])]
     hunt: Option<Option<u64>>,
     /// Fly the i-th of n parts only.

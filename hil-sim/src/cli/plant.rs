@@ -1,5 +1,5 @@
-//! `plant` and `pilot`: a scenario's world, and its controller, for other programs: one JSON object a
-//! line, one in answer.
+//! `plant` and `pilot`: a scenario's world, and its controller, for other programs: one JSON object
+//! a line, one in answer.
 
 use hil_sim::describe::input::Invalid;
 use hil_sim::study::pilot::Controller;

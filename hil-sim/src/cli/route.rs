@@ -32,7 +32,8 @@ pub struct RouteArguments {
     /// The mission.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The origin of N: latitude and longitude in degrees, height in m above the sea; in place of the file's own.
+    /// The origin of N: latitude and longitude in degrees, height in m above the sea; in place of
+    /// the file's own.
     #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true)]
     home: Option<Home>,
     /// Height of the ground, m above the sea, for heights that the file counts from the terrain.

@@ -14,8 +14,8 @@ use crate::describe::scenario::{ControllerSpec, Law};
 pub struct Unsupported(pub String);
 
 /// The parameters with which a [`Rig`](rig::Rig) makes the controller that `spec` describes. A law
-/// that is to fly alone gets the widest envelope there is. Rotors give whatever the law's own limits
-/// let through.
+/// that is to fly alone gets the widest envelope there is. Rotors give whatever the law's own
+/// limits let through.
 ///
 /// # Errors
 /// [`Unsupported`] for a path that has no parameters, or a number outside a parameter's range.

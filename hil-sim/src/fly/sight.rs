@@ -40,7 +40,8 @@ pub struct RotorModel {
 }
 
 impl RotorModel {
-    /// Of the latency and lag that the law of `scenario` is told, after a long time under `thrust`, N.
+    /// Of the latency and lag that the law of `scenario` is told, after a long time under `thrust`,
+    /// N.
     #[must_use]
     pub fn new(scenario: &Scenario, thrust: f64) -> Self {
         let controller = &scenario.controller;

@@ -59,8 +59,8 @@ pub struct Arguments {
     /// are logged: for slow lines.
     #[arg(long)]
     pub no_telemetry: bool,
-    /// Show the flights while they fly, in the report's page at http://127.0.0.1:PORT; any free port
-    /// if it is 0.
+    /// Show the flights while they fly, in the report's page at http://127.0.0.1:PORT; any free
+    /// port if it is 0.
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8420")]
     pub live: Option<u16>,
     /// Seconds without an answer after which the target is lost.

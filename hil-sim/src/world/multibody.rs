@@ -67,7 +67,8 @@ pub struct Multibody {
 }
 
 impl Multibody {
-    /// `vehicle` in `state`, whose rod and attitude are put back on S² and SO(3) to within rounding.
+    /// `vehicle` in `state`, whose rod and attitude are put back on S² and SO(3) to within
+    /// rounding.
     #[must_use]
     pub fn new(vehicle: VehicleParameters, state: &State<f64>) -> Self {
         let mut x = [0.0; COORDINATES];

@@ -11,8 +11,8 @@
 //! order, then exactly, except for `quantum`, which acts on the components read. The rod's rate is
 //! read orthogonal to the rod read.
 //!
-//! The UAV's own position and velocity, and its accelerometer, are channels likewise. They are given
-//! to the controller beside the state where `uav` and `accelerometer` say so.
+//! The UAV's own position and velocity, and its accelerometer, are channels likewise. They are
+//! given to the controller beside the state where `uav` and `accelerometer` say so.
 
 pub mod gnss;
 pub mod imu;

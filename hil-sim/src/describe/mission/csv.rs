@@ -47,8 +47,8 @@ pub struct Rows {
 /// says. Lines that begin with # are passed over.
 ///
 /// # Errors
-/// [`PointsError`] for anything that is not a finite number, a name that is not known, and a missing
-/// or surplus column.
+/// [`PointsError`] for anything that is not a finite number, a name that is not known, and a
+/// missing or surplus column.
 pub fn rows(file: &str, text: &str, most: usize) -> Result<Rows, PointsError> {
     let error = |line, column, message: String| PointsError { file: file.to_owned(), line, column, message };
     let mut reader = csv::ReaderBuilder::new()

@@ -1,8 +1,8 @@
 //! Missions of ground stations and maps, as waypoints of N.
 //!
 //! A file says where on the earth, and above what; [`Mission::local`] makes metres of it about a
-//! home, where N has its origin, by [`Home::local`], as the flight program does of the missions that
-//! ground stations send it.
+//! home, where N has its origin, by [`Home::local`], as the flight program does of the missions
+//! that ground stations send it.
 
 pub mod columns;
 pub mod csv;

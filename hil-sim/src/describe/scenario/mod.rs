@@ -305,7 +305,8 @@ impl Scenario {
         }
     }
 
-    /// Whether the flight does what it is asked for, step by step, instead of following all the time.
+    /// Whether the flight does what it is asked for, step by step, instead of following all the
+    /// time.
     #[must_use]
     pub fn is_mission(&self) -> bool {
         !self.requests.is_empty()

@@ -84,16 +84,16 @@ pub struct Requests {
 }
 
 impl Requests {
-    /// Of `scenario`: until the first request a vehicle that stands keeps its rotors off, and one in
-    /// flight follows.
+    /// Of `scenario`: until the first request a vehicle that stands keeps its rotors off, and one
+    /// in flight follows.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let requests = scenario.requests.iter().map(|asked| (scenario.periods(asked.at_s), *asked)).collect();
         Self { requests, passed: 0, request: if scenario.standing { Request::Off } else { Request::Follow } }
     }
 
-    /// What is asked for in the period `step`, and a factor of the speed if one begins in it. Periods
-    /// in their order.
+    /// What is asked for in the period `step`, and a factor of the speed if one begins in it.
+    /// Periods in their order.
     pub fn at(&mut self, step: u64) -> (Request, Option<f64>) {
         let mut factor = None;
         while let Some((_, asked)) = self.requests.get(self.passed).filter(|(from, _)| *from <= step) {

@@ -20,7 +20,8 @@ pub enum ReadError {
 
 /// Rows of time (s) and the columns of these names, NaN where there is no number: of a CSV each
 /// line; of ULog each message of the first column's topic, with what the others last said until
-/// then, the same instant among it. In ULog a column is a field of its name, or the one of PX4's topics that is the same.
+/// then, the same instant among it. In ULog a column is a field of its name, or the one of PX4's
+/// topics that is the same.
 ///
 /// # Errors
 /// [`ReadError`] says what is wrong, or names the column that is missing.

@@ -117,7 +117,8 @@ fn noise(logs: &[Vec<Sample>], known: &Known) -> Found {
         .collect();
     bends.sort_by(f64::total_cmp);
     let median = bends.get(bends.len() / 2).copied().unwrap_or(f64::NAN);
-    // Three independent readings, 1 + 4 + 1; and half of a normal number's values lie within 0.6745.
+    // Three independent readings, 1 + 4 + 1; and half of a normal number's values lie within
+    // 0.6745.
     let value = median / 0.674_49 / 6.0_f64.sqrt() * known.imu_period_s.sqrt();
     let count = bends.len().max(1) as f64;
     Found {

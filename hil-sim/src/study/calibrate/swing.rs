@@ -1,8 +1,8 @@
 //! The cable's length by its swing, without a look at the load.
 //!
-//! The pull on the UAV, m_Q R f + k_T T b3 − F_Q, has the rod's direction q; the pendulum says L q̈ =
-//! u − (q·u) q with u = F_L/m_L − R f. Twice integrated by parts against a bell φ that vanishes at
-//! both ends with its slope, no noise is differentiated:
+//! The pull on the UAV, m_Q R f + k_T T b3 − F_Q, has the rod's direction q; the pendulum says L q̈
+//! = u − (q·u) q with u = F_L/m_L − R f. Twice integrated by parts against a bell φ that vanishes
+//! at both ends with its slope, no noise is differentiated:
 //!
 //! ```text
 //! L ∫ φ̈ q_h dt = ∫ φ (u − (q·u) q)_h dt
@@ -21,8 +21,8 @@ const MEAN_SQUARE: f64 = 35.0 / 128.0;
 const CLEAR: f64 = 10.0;
 const FEWEST: usize = 4;
 
-/// L, m, and its deviation. `noise` is N_a, `drag` F_Q and F_L/m_L of a sample. `None` of a log that hardly
-/// swings.
+/// L, m, and its deviation. `noise` is N_a, `drag` F_Q and F_L/m_L of a sample. `None` of a log
+/// that hardly swings.
 pub(super) fn length(
     samples: &[Sample],
     uav_mass: f64,

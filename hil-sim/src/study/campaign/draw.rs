@@ -1,5 +1,5 @@
-//! What differs from flight to flight: how any key of the scenario is drawn, and the same as numbers
-//! in ±1 about the nominal.
+//! What differs from flight to flight: how any key of the scenario is drawn, and the same as
+//! numbers in ±1 about the nominal.
 
 use serde::Deserialize;
 use toml::{Table, Value};
@@ -77,8 +77,8 @@ impl Distribution {
         }
     }
 
-    /// The spans of the numbers in it: nominal at 0, the ends of what is drawn at −1 and 1. A choice
-    /// and a formula have none.
+    /// The spans of the numbers in it: nominal at 0, the ends of what is drawn at −1 and 1. A
+    /// choice and a formula have none.
     pub(super) fn spans(&self) -> Vec<Span> {
         match self {
             Self::Uniform(ends) => vec![Span::between(*ends)],
@@ -154,8 +154,8 @@ impl Span {
     }
 }
 
-/// Sets the key with this dotted path, making the tables on the way. A number leads to an entry of a
-/// list.
+/// Sets the key with this dotted path, making the tables on the way. A number leads to an entry of
+/// a list.
 pub(super) fn set(table: &mut Table, path: &str, value: Value) -> Result<(), Invalid> {
     let mut steps = path.split('.');
     let first = steps.next().unwrap_or_default();

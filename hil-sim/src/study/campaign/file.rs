@@ -202,8 +202,8 @@ impl Campaign {
         Ok(table)
     }
 
-    /// The flight of a scenario's keys, with the start of these draws where the scenario is not of a
-    /// vehicle that stands.
+    /// The flight of a scenario's keys, with the start of these draws where the scenario is not of
+    /// a vehicle that stands.
     pub(super) fn flight(&self, table: Table, draws: &Draws) -> Result<Drawn, Invalid> {
         let scenario = self.scenario(table)?;
         let Law::Follow { path, .. } = &scenario.controller.law else {

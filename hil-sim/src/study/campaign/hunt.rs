@@ -71,7 +71,8 @@ pub enum HuntError {
 /// choices and the place on the path are in each flight those of `seed`.
 ///
 /// # Errors
-/// [`HuntError`] if nothing is drawn, the nominal flight fails, or the flight to begin from does not.
+/// [`HuntError`] if nothing is drawn, the nominal flight fails, or the flight to begin from does
+/// not.
 pub fn hunt(campaign: &Campaign, seed: Seed, from_flight: bool, control: Control<'_>) -> Result<Hunt, HuntError> {
     let base = campaign.draws(seed)?;
     let space = Space::new(campaign, base.clone());

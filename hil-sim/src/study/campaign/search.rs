@@ -1,5 +1,5 @@
-//! The search for the smallest point that fails: bisection along rays from the nominal, then smaller
-//! and smaller turns of the best one.
+//! The search for the smallest point that fails: bisection along rays from the nominal, then
+//! smaller and smaller turns of the best one.
 //!
 //! A direction is asked at a length just short of the best known, so that one that is no better
 //! costs one flight. That takes failures to be monotone along a ray, which is checked at the end

@@ -21,8 +21,8 @@ pub struct Summary {
     pub runs: usize,
     /// Of all random numbers.
     pub seed: u64,
-    /// Share of flights with d_C below 25 cm throughout the last quarter; of those that are to land,
-    /// on the ground with rotors off and the payload in its place.
+    /// Share of flights with d_C below 25 cm throughout the last quarter; of those that are to
+    /// land, on the ground with rotors off and the payload in its place.
     pub success_rate: f64,
     /// Clopper and Pearson's interval for it, of 95 % confidence.
     pub success_interval: [f64; 2],

@@ -53,7 +53,8 @@ pub struct Legs {
     pub hovering: f64,
     /// At each node of the lap the speed that is set, m/s.
     pub speeds: Vec<f64>,
-    /// At each node of the lap how many times its speed could be flown within the limits, at most 4.
+    /// At each node of the lap how many times its speed could be flown within the limits, at most
+    /// 4.
     pub factors: Vec<f64>,
 }
 

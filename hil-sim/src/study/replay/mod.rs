@@ -2,9 +2,10 @@
 //!
 //! The UAV moves as the log has it, whatever the law now says: the loop is open. The log's rows are
 //! taken between by cubics (positions), great arcs (attitude) and lines, so that the controller
-//! steps at its own rate. What is applied is what was logged: the law's memory goes on from that, and
-//! its command is what it would have said at that instant. A law with fast poles says much of little:
-//! torque is far apart where the state that it is given is centimetres from the one that flew.
+//! steps at its own rate. What is applied is what was logged: the law's memory goes on from that,
+//! and its command is what it would have said at that instant. A law with fast poles says much of
+//! little: torque is far apart where the state that it is given is centimetres from the one that
+//! flew.
 
 mod agreement;
 mod filter;

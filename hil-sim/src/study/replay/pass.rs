@@ -131,8 +131,8 @@ impl<'a> Pass<'a> {
         Instant { uav, specific_force, truth, found }
     }
 
-    /// What the law says, once it has begun, where `logged` is what is then applied; in a gap of the
-    /// log it flies on its model.
+    /// What the law says, once it has begun, where `logged` is what is then applied; in a gap of
+    /// the log it flies on its model.
     fn answer(
         &mut self,
         instant: &Instant,

@@ -26,8 +26,8 @@ pub struct Between<'a, const N: usize> {
 }
 
 impl<const N: usize> Series<N> {
-    /// The rows of `names` whose numbers `are_there`; `None` where the log lacks one of them, or all
-    /// rows.
+    /// The rows of `names` whose numbers `are_there`; `None` where the log lacks one of them, or
+    /// all rows.
     ///
     /// # Errors
     /// [`ReadError`] for what is no log.
@@ -86,8 +86,8 @@ impl<const N: usize> Series<N> {
         })
     }
 
-    /// The mean of the rows within `period` seconds up to `t_s`; between rows that are further apart,
-    /// as [`at`](Self::at).
+    /// The mean of the rows within `period` seconds up to `t_s`; between rows that are further
+    /// apart, as [`at`](Self::at).
     pub fn mean(&self, t_s: f64, period: f64) -> Option<[f64; N]> {
         let place = |t_s: f64| self.rows.partition_point(|row| row.0 <= t_s + SAME_S);
         let rows = &self.rows[place(t_s - period)..place(t_s)];
