@@ -99,7 +99,8 @@ pub const MAX_DELAY: usize = 31;
 /// A power of two, so that a count that wraps keeps its place.
 const SLOTS: usize = MAX_DELAY + 1;
 
-/// Model steps at most over a latency: at 60 ms no step is longer than 8 ms.
+/// Model steps over a latency are about this long, s, and no more than so many: rounding makes none.
+const STEP: f64 = 0.02 * 1.001;
 const STEPS: usize = 8;
 
 /// A delay line of whole periods, then a first-order lag (11.6): the commands' way to thrust and
@@ -117,6 +118,8 @@ pub(crate) struct Actuators<T> {
     /// begins to: nothing without a lag.
     drift: Command<T>,
     delay: usize,
+    /// In how many legs the commands in flight are gone through: one where there are none.
+    legs: usize,
     /// A ring of the last commands; `newest` counts them, and the last one stands there.
     newest: usize,
     line: [Command<T>; SLOTS],
@@ -171,11 +174,14 @@ impl<T: Real> Actuators<T> {
         OutOfRange::within("latency", latency, T::zero(), period * T::lit(MAX_DELAY as f64 + 1e-3))?;
         let periods = latency / period + T::lit(0.5);
         let delay = (0..MAX_DELAY).take_while(|&n| T::lit((n + 1) as f64) <= periods).count();
+        let flown = |legs: usize| T::lit(legs as f64) * T::lit(STEP);
+        let legs = (1..STEPS.min(delay)).take_while(|&legs| flown(legs) < T::lit(delay as f64) * period).count() + 1;
         let lag = (lag > T::zero()).then(|| Lag::new(period, lag, led(lag), horizon - latency, command));
         Ok(Self {
             line: [command; SLOTS],
             newest: 0,
             delay,
+            legs,
             applied: command,
             step: Command::zero(),
             drift: Command::zero(),
@@ -241,25 +247,21 @@ impl<T: Real> Actuators<T> {
         self.delay > 0
     }
 
-    /// In how many legs the time from the sample to when the coming command begins to act is gone
-    /// through.
+    /// In how many [legs](Self::leg) the commands in flight are gone through.
     pub(crate) fn legs(&self) -> usize {
-        self.delay.min(STEPS)
+        self.legs
     }
 
-    /// A leg's length in periods and the mean of what acts in it; `acting` at its beginning, and
+    /// A leg's length in periods and the sum of what acts in each; `acting` at its beginning, and
     /// then at its end.
-    #[inline(never)]
     pub(crate) fn leg(&self, index: usize, acting: &mut Command<T>) -> (T, Command<T>) {
-        // There is no leg without legs, which the compiler does not see.
-        let passed = |index: usize| (self.delay * index).checked_div(self.legs()).unwrap_or(0);
+        let passed = |index: usize| (self.delay * index).checked_div(self.legs).unwrap_or(0);
         let (begin, end) = (passed(index), passed(index + 1));
         let mut sum = Command::zero();
         for period in begin..end {
             sum = sum.plus(&self.pass(acting, self.delay - 1 - period));
         }
-        let periods = T::lit((end - begin) as f64);
-        (periods, sum.times(T::one() / periods))
+        (T::lit((end - begin) as f64), sum)
     }
 
     /// The mean over the period of the command sent `before` the last one; `acting` at its

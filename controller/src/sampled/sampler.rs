@@ -380,26 +380,34 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// The UAV where its command acts: its own position and velocity, after the time that attitude
     /// and body rate look `ahead`.
     pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
-        let Memory { rest, actuators, .. } = &self.memory;
-        let (mut uav, mut acting) = (*uav, *actuators.applied());
-        for index in 0..actuators.legs() {
+        let (mut uav, mut acting) = (*uav, *self.memory.actuators.applied());
+        for index in 0..self.memory.actuators.legs() {
             let (time, mean) = self.leg(index, &mut acting);
             uav = self.pass_uav(&uav, force, &mean, time);
         }
-        self.pass_uav(&uav, force, &actuators.arriving().plus(actuators.drift()), *rest)
+        uav
     }
 
-    /// A leg's time, s, and the mean of what acts in it.
+    /// A leg's time, s, and the mean of what acts in it. The last goes on to where the law's answer
+    /// is for, under what acts when the coming command begins to.
+    #[inline(never)]
     fn leg(&self, index: usize, acting: &mut Command<T>) -> (T, Command<T>) {
-        let (periods, mean) = self.memory.actuators.leg(index, acting);
-        (periods * self.memory.period, mean)
+        let Memory { period, rest, actuators, .. } = &self.memory;
+        let (periods, sum) = actuators.leg(index, acting);
+        let (flown, given) = (periods * *period, sum.times(*period));
+        let rest = if index + 1 < actuators.legs() { T::zero() } else { *rest };
+        let coming = actuators.arriving().plus(actuators.drift());
+        let time = flown + rest;
+        let mean = if time > T::zero() { given.plus(&coming.times(rest)).times(T::one() / time) } else { coming };
+        (time, mean)
     }
 
     /// The UAV `dt` later under a held `command` and what pulls at it, m/s².
     #[inline(never)]
     fn pass_uav(&self, uav: &Uav<T>, force: &Vector3<T>, command: &Command<T>, dt: T) -> Uav<T> {
         let Memory { vehicle, observer, .. } = &self.memory;
-        let b3: Vector3<T> = uav.attitude.column(2).into();
+        let (halfway, _) = turn(&uav.attitude, &uav.body_rate, &Vector3::zeros(), dt * T::lit(0.5));
+        let b3: Vector3<T> = halfway.column(2).into();
         let mut acceleration = force - b3 * (command.thrust / vehicle.params().uav_mass);
         acceleration.z += vehicle.params().gravity;
         let (position, velocity) = advance(&uav.position, &uav.velocity, &acceleration, dt);
@@ -444,15 +452,13 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// rates, in a fixed number of steps (11.10).
     #[cold]
     fn fly_through(&mut self, sampled: &State<T>) {
-        let Memory { weighed, rest, actuators, observer, .. } = &self.memory;
+        let Memory { weighed, actuators, observer, .. } = &self.memory;
         let (mut state, mut known, mut acting) = (*sampled, *observer.estimate(), *actuators.applied());
         for index in 0..actuators.legs() {
             let (time, mean) = self.leg(index, &mut acting);
             (state, known) = pass(weighed, &state, &known, &mean, time);
         }
-        let coming = actuators.arriving().plus(actuators.drift());
-        let (state, expected) = pass(weighed, &state, &known, &coming, *rest);
-        self.memory.expected = Some(expected);
+        self.memory.expected = Some(known);
         self.memory.ahead.state = state;
     }
 

@@ -9,7 +9,6 @@ use super::pilot::{Answers, Decision};
 use super::sight::Sight;
 use super::touchdown::{Touchdown, Watch};
 use crate::describe::scenario::{Requests, Scenario};
-use crate::world::Reading;
 use crate::world::{Body, Seed, World};
 
 /// A flight this far from its path is lost and ends, m; one that starts further off, at twice its
@@ -207,7 +206,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             step += 1;
             continue;
         }
-        let read = match &mut sight {
+        let mut read = match &mut sight {
             Some(sight) => sight.see(&world, &applied),
             None => world.read(&state),
         };
@@ -217,12 +216,9 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
                 Entry::Hover => pilot.take_over(&read.state, &hover),
             }
         }
-        let read = Reading {
-            comes: !(has_begun && world.misses()),
-            // Whether it stands or flies, the first reading says.
-            sees_load: read.sees_load || !has_begun,
-            ..read
-        };
+        read.comes = !(has_begun && world.misses());
+        // Whether it stands or flies, the first reading says.
+        read.sees_load |= !has_begun;
         has_begun = true;
         // A controller counts its periods.
         let Some(decision) = pilot.step(&read, request, step as f64 * period) else {

@@ -193,14 +193,13 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
         let all = Measured { state: read.sees_load.then_some(&state), uav: uav.as_ref(), specific_force };
         let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
-        let body_rate = measured.body_rate();
         // Both are those at the sample.
         let zeta = *self.rig.zeta();
         let integral = self.has_telemetry.then(|| self.rig.integral());
         let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);
         Decision {
             command: command.cast(),
-            body_rate: self.gives_rates.then(|| self.rig.rate_setpoint(body_rate).body_rate.map(T::cast)),
+            body_rate: self.gives_rates.then(|| self.rig.rate_setpoint(measured.body_rate()).body_rate.map(T::cast)),
             zeta: zeta.map(T::cast),
             mode,
             fault,

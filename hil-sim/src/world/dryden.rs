@@ -94,6 +94,7 @@ impl Axis {
         axis
     }
 
+    #[inline]
     fn draw(&self, [a, b, c]: &[f64; 3], stream: &mut Stream) -> [f64; 2] {
         let (n1, n2) = (stream.normal(), stream.normal());
         [a * n1, b * n1 + c * n2]

@@ -126,9 +126,9 @@ impl Stream {
     }
 
     /// Three independent standard normals.
+    #[inline]
     pub fn normals(&mut self) -> Vector3<f64> {
-        let [x, y, z] = [(); 3].map(|()| self.normal());
-        Vector3::new(x, y, z)
+        Vector3::new(self.normal(), self.normal(), self.normal())
     }
 }
 

@@ -162,9 +162,9 @@ impl Channel {
         if quantum > 0.0 { value.map(|x| libm::rint(x / quantum) * quantum) } else { value }
     }
 
-    /// How far back, as a share of the last period, the sample was taken.
-    fn age(&self, period: f64, stream: &mut Stream) -> f64 {
-        if self.jitter_s > 0.0 { stream.uniform(0.0, self.jitter_s / period) } else { 0.0 }
+    /// How far back, as a share of the last period, the sample was taken, if not now.
+    fn age(&self, period: f64, stream: &mut Stream) -> Option<f64> {
+        (self.jitter_s > 0.0).then(|| stream.uniform(0.0, self.jitter_s / period))
     }
 
     /// What the channel's faults make of a reading.
@@ -284,8 +284,10 @@ impl SensorModel {
         };
         let attitude = {
             let channel = &sensors.attitude;
-            let age = channel.age(sample.period, sample.stream);
-            let aged = state.attitude + (before.attitude - state.attitude) * age;
+            let aged = match channel.age(sample.period, sample.stream) {
+                Some(age) => state.attitude + (before.attitude - state.attitude) * age,
+                None => state.attitude,
+            };
             let turned = orthonormal(&(aged * turn(&channel.error(sample.stream))));
             let column =
                 |i| channel.fail(t_s, channel.round(turned.column(i).into()), &last.attitude.column(i).into());
@@ -332,8 +334,10 @@ impl Sample<'_> {
     /// The value of a channel at its sample time.
     #[inline]
     fn aged(&mut self, channel: &Channel, now: &Vector3<f64>, before: &Vector3<f64>) -> Vector3<f64> {
-        let age = channel.age(self.period, self.stream);
-        now + (before - now) * age
+        match channel.age(self.period, self.stream) {
+            Some(age) => now + (before - now) * age,
+            None => *now,
+        }
     }
 
     /// What a channel reads of `now`, which was `before` at the sample before, when it read `last`.
