@@ -4,7 +4,7 @@ use hil_sim::describe::course::{PathSpec, parse_path};
 use hil_sim::describe::scenario::{Law, ROUTES, Scenario, builtin};
 use hil_sim::fly::metrics::Results;
 use hil_sim::fly::run::{Arithmetic, fly_simply};
-use hil_sim::study::check::{Limits, Report};
+use hil_sim::study::check::{Limits, Report, way_breaches};
 use hil_sim::study::eval;
 use serde_json::{Value, json};
 
@@ -178,6 +178,48 @@ fn fences_hold_for_load_uav_and_cable() {
     // The corner is cut by its blend: its keep-out is not entered.
     let corner = json!({ "outside": [{ "center": [40, 0], "radius": 0.3 }], "margin_m": 0.5 });
     assert_eq!(breaches(corner), []);
+}
+
+/// From 30 m beside its first leg the load goes straight to the route: what stands in that way, for
+/// load, UAV or cable, is told with the leg that it leads to; what stands beside it is not.
+#[test]
+fn fences_hold_on_the_way_to_the_route() {
+    let breaches = |outside: Value, standing: bool| {
+        let start = if standing {
+            json!({ "position": [20.5, 30, 0], "uav_position": [20, 30, 0], "standing": true })
+        } else {
+            json!({ "position": [20, 30, -10] })
+        };
+        let text = toml::to_string(&json!({
+            "path": { "kind": "route", "points": [[0, 0, -10], [40, 0, -10], [40, -30, -10]], "corner_m": 4, "speed": 3 },
+            "initial": start,
+            "ground": {},
+            "controller": { "rate_hz": 250.0, "observer": { "payload": 4.0, "rod": 4.0, "torque": 4.0 } },
+            "request": [{ "at_s": 0.0, "do": "hold" }, { "at_s": if standing { 30.0 } else { 1.0 }, "do": "follow" }],
+            "duration_s": 100.0,
+            "fence": { "outside": [outside], "margin_m": 0.5 }
+        }));
+        let scenario = Scenario::parse("fence.toml", &text.unwrap()).unwrap_or_else(|error| panic!("{error}"));
+        let Law::Follow { path, .. } = &scenario.controller.law else { panic!("it follows") };
+        let vehicle = controller::Vehicle::new(scenario.controller.vehicle).unwrap();
+        let report = path.check(&vehicle, &scenario.limits).unwrap();
+        let fence = scenario.fence.as_ref().unwrap();
+        assert_eq!(fence.breaches(&report), [], "the route itself keeps it");
+        way_breaches(&scenario, fence, &report).unwrap()
+    };
+    let cylinder = |n1: f64, up: [f64; 2]| json!({ "center": [n1, 15], "radius": 0.2, "up_m": up });
+    // The load at 10 m, the UAV 2 m above it.
+    for (up, what) in [([9.0, 10.5], "the load"), ([11.9, 13.0], "the UAV"), ([10.8, 11.2], "the cable")] {
+        let found = breaches(cylinder(20.0, up), false);
+        let [way] = found[..] else { panic!("{found:?}") };
+        let said = way.to_string();
+        assert!(said.starts_with(&format!("{what} enters a keep-out")) && said.contains("way to leg 0"), "{said}");
+    }
+    // From the ground it rises on the way.
+    for standing in [false, true] {
+        assert!(!breaches(cylinder(20.0, [0.0, 20.0]), standing).is_empty());
+        assert_eq!(breaches(cylinder(23.0, [0.0, 20.0]), standing), []);
+    }
 }
 
 #[test]

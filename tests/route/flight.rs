@@ -189,6 +189,28 @@ fn there_and_back() {
     stays_on(courses::there_and_back(), 90.0);
 }
 
+/// From 20 m aside the payload goes straight to the route, and only then along it: no leg is flown
+/// beside the route, no waypoint passed from afar.
+#[test]
+fn joined_by_a_straight_way() {
+    let course = courses::there_and_back();
+    let route = course.route();
+    let mut flight = Flight::new(course, route, [12.0, -16.0, 4.0]);
+    flight.until(30.0, |flight| flight.supervisor.mode() == Mode::Join);
+    let (from, to) = (flight.body.state().position, flight.route().point().cast::<f64>());
+    let way = to - from;
+    let (mut aside, mut along) = (0.0_f64, 0.0_f64);
+    while flight.supervisor.mode() == Mode::Join {
+        assert!(flight.samples < (90.0 / PERIOD) as u32, "it does not join");
+        flight.step();
+        let gone = flight.body.state().position - from;
+        aside = aside.max(gone.cross(&way).norm() / way.norm());
+        along = along.max(gone.dot(&way) / way.norm());
+    }
+    // What pole placement leaves of a slide in f32.
+    assert!(aside < 5e-3 && (along - way.norm()).abs() < 5e-3, "{aside} m aside, {along} of {} m", way.norm());
+}
+
 /// Within 20 s of coming within 4 m of the stop the payload rests on it, to a millimetre; until
 /// told it stays; then it goes on.
 #[test]

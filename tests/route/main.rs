@@ -3,4 +3,5 @@
 mod courses;
 mod flight;
 mod gusts;
+mod laid;
 mod law;

@@ -352,7 +352,7 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     fn accept(&mut self, period: T, is_saturated: bool) {
         self.approach.advance(period);
         self.rest(period);
-        if let Some(is_backward) = self.speed_factor.advance() {
+        if let Some(is_backward) = self.speed_factor.advance(!self.approach.is_active()) {
             let has_own = self.path.set_backward(is_backward);
             self.speed_factor.turned(has_own);
         }
@@ -377,6 +377,11 @@ impl<T: Real, P: Path<T>> Law<T> for Follow<T, P> {
     }
 
     fn join(&mut self, state: &State<T>, pace: &Pace<T>) -> Result<(), Refused> {
+        if self.path.dwell().is_some() {
+            // Its place stands still until it is joined, so that the payload goes straight there,
+            // and no leg is flown beside it.
+            self.speed_factor.wait();
+        }
         self.approach.join(&mut self.path, pace, state, self.speed_factor.effective())?;
         self.reset_integrals();
         Ok(())

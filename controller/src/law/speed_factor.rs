@@ -65,6 +65,8 @@ pub(crate) struct SpeedFactor<T> {
     is_settled: bool,
     /// Settled where v_d itself is flown.
     is_one: bool,
+    /// At 0 until the path is joined.
+    is_waiting: bool,
     /// Over a control period, and as far as the law looks ahead.
     period: Decay<T>,
     horizon: Decay<T>,
@@ -81,6 +83,7 @@ impl<T: Real> SpeedFactor<T> {
             deviations: [T::zero(); LAGS],
             is_settled: true,
             is_one: true,
+            is_waiting: false,
             period: Decay::over(period),
             horizon: Decay::over(horizon),
         }
@@ -140,18 +143,29 @@ impl<T: Real> SpeedFactor<T> {
     /// Begins at 0, for a payload at rest.
     pub(crate) fn restart(&mut self) {
         self.deviations = [-self.wished; LAGS];
+        self.is_waiting = false;
         self.unsettle();
     }
 
-    /// A period on. Where the way turns in it, whether it is backward then, and
-    /// [`turned`](Self::turned) is to be told.
+    /// The same, once the path [is joined](Self::advance).
+    pub(crate) fn wait(&mut self) {
+        self.restart();
+        self.is_waiting = true;
+    }
+
+    /// A period on, at whose end the path is joined or not yet. Where the way turns in it, whether
+    /// it is backward then, and [`turned`](Self::turned) is to be told.
     #[inline]
-    pub(crate) fn advance(&mut self) -> Option<bool> {
-        if self.is_settled { None } else { self.change() }
+    pub(crate) fn advance(&mut self, is_joined: bool) -> Option<bool> {
+        if self.is_settled { None } else { self.change(is_joined) }
     }
 
     #[cold]
-    fn change(&mut self) -> Option<bool> {
+    fn change(&mut self, is_joined: bool) -> Option<bool> {
+        if self.is_waiting && !is_joined {
+            return None;
+        }
+        self.is_waiting = false;
         self.deviations = self.period.of(&self.deviations);
         if self.after.is_some() {
             return self.turning();
@@ -174,7 +188,9 @@ impl<T: Real> SpeedFactor<T> {
     // Apart: flight at v_d does without it.
     #[inline(never)]
     fn scale(&self, outputs: &mut Outputs<T>) {
-        let missing = self.ahead() * -self.sign + T::one();
+        // A wait has no rate, as if it were for ever.
+        let ahead = if self.is_waiting { Series::constant(T::zero()) } else { self.ahead() };
+        let missing = ahead * -self.sign + T::one();
         outputs.speed_error += outputs.prescribed * missing;
     }
 
@@ -220,7 +236,7 @@ mod tests {
                 assert!(error <= bound, "step {step}, order {k}: {error:e}");
             }
             assert!(factor.value() <= 1.3 + 1e-12 && factor.value() >= -1e-12, "step {step}");
-            assert_eq!(factor.advance(), None);
+            assert_eq!(factor.advance(true), None);
             last = now;
         }
         assert_eq!(factor.value(), 0.2);
@@ -233,7 +249,7 @@ mod tests {
         let mut turns = 0;
         for _ in 0..20_000 {
             let before = factor.value();
-            if let Some(is_backward) = factor.advance() {
+            if let Some(is_backward) = factor.advance(true) {
                 assert!(is_backward && before.abs() < 0.01, "{before}");
                 factor.turned(false);
                 turns += 1;
@@ -249,7 +265,7 @@ mod tests {
         let mut fastest = 0.0_f64;
         for _ in 0..3000 {
             fastest = fastest.max(factor.ahead().derivative(1).abs());
-            factor.advance();
+            factor.advance(true);
         }
         // a 5⁵ e⁻⁵/5!.
         assert!((fastest - 0.351).abs() < 1e-3, "{fastest}");

@@ -1,12 +1,11 @@
 //! `check`: can a path be flown?
 
 use controller::{Vehicle, VehicleParams};
-use hil_sim::describe::course::PathSpec;
 use hil_sim::describe::scenario::{Law, Scenario};
-use hil_sim::study::check::{Fence, Limits, Reason, Report};
+use hil_sim::study::check::{Reason, Report, way_breaches};
 use std::error::Error;
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use witness::plant::VehicleParameters;
 
@@ -25,14 +24,17 @@ body_rate (rad/s), torque (N m, per axis), tension (part of the payload's weight
 pub fn check(common: &Common, files: &[PathBuf]) -> Ended {
     let mut code = ExitCode::SUCCESS;
     for file in files {
-        let Subject { path, vehicle, limits, fence } = subject(file)?;
+        let scenario = load::one(file)?;
         let name = file.display();
-        match path.check(&vehicle, &limits) {
+        let Law::Follow { path, .. } = &scenario.controller.law else {
+            return Err(format!("{name}: the law \"track\" has no path to check").into());
+        };
+        match path.check(&vehicle(&scenario.vehicle)?, &scenario.limits) {
             Ok(report) => {
                 if !common.quiet {
                     writeln!(io::stdout().lock(), "{name}\n{report}")?;
                 }
-                let refused = faults(&report, fence.as_ref());
+                let refused = faults(&report, &scenario)?;
                 for fault in refused.iter().take(SHOWN) {
                     eprintln!("hil-sim: {name}: {fault}");
                 }
@@ -62,7 +64,7 @@ pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Err
         let Ok(vehicle) = vehicle(&scenario.vehicle) else { continue };
         match path.check(&vehicle, &scenario.limits) {
             Ok(report) => {
-                let faults = faults(&report, scenario.fence.as_ref());
+                let faults = faults(&report, scenario)?;
                 refused.extend(faults.iter().take(SHOWN).map(|fault| format!("{}: {fault}", scenario.name)));
             }
             Err(refusal) if refusal.reason == Reason::FreeFall => {
@@ -88,29 +90,14 @@ pub fn refuse(scenarios: &[Scenario], unchecked: bool) -> Result<(), Box<dyn Err
 /// Faults that are printed of a path, at most: a long route can have two a leg.
 const SHOWN: usize = 20;
 
-/// What is wrong with a path that can be walked.
-fn faults(report: &Report, fence: Option<&Fence>) -> Vec<String> {
-    let breaches = fence.map(|fence| fence.breaches(report)).unwrap_or_default();
-    let excesses = report.excesses.iter().map(ToString::to_string);
-    excesses.chain(breaches.iter().map(ToString::to_string)).collect()
-}
-
-/// The path of a scenario, with what it is checked against.
-struct Subject {
-    path: PathSpec,
-    vehicle: Vehicle<f64>,
-    limits: Limits,
-    fence: Option<Fence>,
-}
-
-fn subject(file: &Path) -> Result<Subject, Box<dyn Error>> {
-    let scenario = load::one(file)?;
-    let vehicle = vehicle(&scenario.vehicle)?;
-    let Scenario { limits, fence, controller, .. } = scenario;
-    match controller.law {
-        Law::Follow { path, .. } => Ok(Subject { path, vehicle, limits, fence }),
-        Law::Track { .. } => Err(format!("{}: the law \"track\" has no path to check", file.display()).into()),
+/// What is wrong with a path that can be walked, and with the way to it.
+fn faults(report: &Report, scenario: &Scenario) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut faults: Vec<String> = report.excesses.iter().map(ToString::to_string).collect();
+    if let Some(fence) = &scenario.fence {
+        let breaches = way_breaches(scenario, fence, report)?.into_iter().chain(fence.breaches(report));
+        faults.extend(breaches.map(|breach| breach.to_string()));
     }
+    Ok(faults)
 }
 
 fn vehicle(params: &VehicleParameters) -> Result<Vehicle<f64>, Box<dyn Error>> {

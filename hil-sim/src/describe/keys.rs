@@ -187,7 +187,7 @@ pub const SECTIONS: &[Section] = &[
                 "(by the vehicle)",
                 "What the vehicle may be asked for, by `check` and `run`.",
             ),
-            key("fence", "", Other("table"), "(none)", "Where the flight stays, by `check` and `run`."),
+            key("fence", "", Other("table"), "(none)", "Where the path stays and the way to it, in calm, by `check` and `run`."),
         ],
     },
     Section {
@@ -395,7 +395,7 @@ pub const SECTIONS: &[Section] = &[
                 "m",
                 Other("0.02 to 1000, \"smooth\", or a list of these, one each"),
                 "2.0",
-                "How far from a waypoint its corner's blend begins, at most half of either leg. Smooth: the curve passes through it.",
+                "How far from a waypoint its corner's blend begins, at most half of either leg. Smooth: the curve passes through it, by itself or among evenly spaced others.",
             ),
             key(
                 "speed",

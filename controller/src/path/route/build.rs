@@ -19,8 +19,8 @@ pub struct Waypoint<T> {
     pub point: [T; 3],
     /// How far from the point the corner's blend begins and ends, m, 0.02 to 1000; at most half of
     /// either leg is taken. `None`: no corner, but a point that the curve passes smoothly through,
-    /// among evenly spaced others of its kind; where their spacing changes by more than a factor 2
-    /// it passes by.
+    /// alone between corners or stops, or among evenly spaced others of its kind; where the spacing
+    /// of those changes by more than a factor 2 it passes by.
     pub corner: Option<T>,
     /// Speed of the leg that begins here, m/s, 0.05 to 100.
     pub speed: T,

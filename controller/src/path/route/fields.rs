@@ -49,9 +49,17 @@ pub(super) fn mark<T: Real>(knot: &mut Knot<T>) {
 /// Sweeps over the marked points: each takes more than half of what is left of smooth data's error.
 const SWEEPS: usize = 60;
 
-/// Spacings that differ by more than this factor are no place to interpolate: the curve would swing
-/// between them.
+/// Where spacings differ by more than this factor, marked points in a row are not interpolated: the
+/// curve would swing between them. One alone moves by twice what it is missed by, and no other.
 const UNEVEN: f64 = 2.0;
+
+/// What a mark becomes that is not to be interpolated.
+const PASSED_BY: f64 = 2.0;
+
+/// The mark of a knot, or zero.
+fn marked<T: Real>(knots: &[Knot<T>], index: usize) -> T {
+    knots.get(index).map_or(T::zero(), |Knot { normals: [_, [mark, ..]], .. }| *mark)
+}
 
 /// Moves each marked point by what the curve misses its place, over and over (Gauss and Seidel):
 /// the spline's matrix is symmetric and positive.
@@ -61,15 +69,21 @@ pub(super) fn interpolate<T: Real>(knots: &mut [Knot<T>], used: usize, is_closed
         let steps = points.array_windows().take(6).map(|[from, to]| length(&(to - from)));
         let (least, most) =
             steps.fold((T::lit(1e9), T::zero()), |(least, most), step| (least.min(step), most.max(step)));
-        if let Some(knot) = knots.get_mut(index).filter(|_| most > least * T::lit(UNEVEN)) {
-            knot.normals = Knot::default().normals;
+        let beside = |offset: usize| marked(knots, neighbour(index, offset, used, is_closed)) != T::zero();
+        let is_alone = !(0..7).filter(|&offset| offset != 3).any(beside);
+        if most > least * T::lit(UNEVEN)
+            && marked(knots, index) != T::zero()
+            && !is_alone
+            && let Some(Knot { normals: [_, mark], .. }) = knots.get_mut(index)
+        {
+            *mark = [T::lit(PASSED_BY); 3];
         }
     }
     let weights = Weights::at(T::zero());
     for _ in 0..SWEEPS {
         for index in 0..used {
             let Some([place, [mark, ..]]) = knots.get(index).map(|knot| knot.normals) else { continue };
-            if mark == T::zero() {
+            if mark != T::one() {
                 continue;
             }
             let points = window(knots, index, used, is_closed);

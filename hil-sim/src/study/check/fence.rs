@@ -46,7 +46,8 @@ pub struct Region {
 
 /// A place where the fence is not kept.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("{what} {}: {distance:.2} m from it where {margin:.2} m are to be kept, at {place}", if *.is_inside { "leaves the fence" } else { "enters a keep-out" })]
+#[error("{what} {}: {distance:.2} m from it where {margin:.2} m are to be kept, {}",
+    if *.is_inside { "leaves the fence" } else { "enters a keep-out" }, self.whereabouts())]
 pub struct Breach {
     /// The load, the UAV or the cable.
     pub what: &'static str,
@@ -58,9 +59,25 @@ pub struct Breach {
     pub distance: f64,
     /// What was to be kept, m.
     pub margin: f64,
-    /// Where the load is then.
+    /// It is on the way to the path.
+    pub is_before: bool,
+    /// Where the load is then; on the way to a route with the leg that is joined.
     pub place: Place,
 }
+
+impl Breach {
+    fn whereabouts(&self) -> String {
+        let Self { place: place @ Place { position: p, leg, .. }, .. } = self;
+        if !self.is_before {
+            return format!("at {place}");
+        }
+        let to = leg.map_or("the path".to_owned(), |leg| format!("leg {leg}"));
+        format!("on the way to {to}, the load at ({:.3}, {:.3}, {:.3}) m", p.x, p.y, p.z)
+    }
+}
+
+/// Load and UAV.
+pub(super) type Ends = [Vector3<f64>; 2];
 
 impl Fence {
     /// Checks the numbers; `at` is the field's name.
@@ -81,42 +98,44 @@ impl Fence {
     /// the margin.
     #[must_use]
     pub fn breaches(&self, report: &Report) -> Vec<Breach> {
-        let mut worst: Vec<Breach> = Vec::new();
+        let mut worst = Vec::new();
         let nodes = report.lap.nodes();
-        let pairs = nodes.iter().zip(&report.uavs);
-        for (index, (node, uav)) in pairs.enumerate() {
+        for (index, (node, uav)) in nodes.iter().zip(&report.uavs).enumerate() {
             let (next, next_uav) = nodes.get(index + 1).map_or((node, uav), |next| (next, &report.uavs[index + 1]));
-            // The two bodies' ways are as good as straight between nodes; the cable goes sideways.
-            let steps = (length(&(next.position() - node.position())) / STEP).ceil().max(1.0);
-            let between =
-                |from: &Vector3<f64>, to: &Vector3<f64>, step: u32| from + (to - from) * (f64::from(step) / steps);
-            let cables = (0..steps as u32).map(|step| {
-                ("the cable", [between(&node.position(), &next.position(), step), between(uav, next_uav, step)])
-            });
-            let bodies = [("the load", [node.position(), next.position()]), ("the UAV", [*uav, *next_uav])];
-            let ways: Vec<_> = bodies.into_iter().chain(cables).collect();
-            let regions = self.inside.iter().map(|region| (true, region)).enumerate();
-            for (region, (is_inside, shape)) in
-                regions.chain(self.outside.iter().map(|region| (false, region)).enumerate())
-            {
-                let shape = shape.as_flown(is_inside);
-                for &(what, way) in &ways {
-                    // On the edge is over it.
-                    let Some(distance) = shape.breach(&way, self.margin_m) else { continue };
-                    let breach =
-                        Breach { what, is_inside, region, distance, margin: self.margin_m, place: node.place() };
-                    let same = |other: &&mut Breach| {
-                        (other.is_inside, other.region, other.place.leg) == (is_inside, region, node.leg)
-                    };
-                    match worst.iter_mut().find(same) {
-                        Some(known) if known.distance <= distance => {}
-                        Some(known) => *known = breach,
-                        None => worst.push(breach),
-                    }
+            self.look(&[[node.position(), *uav], [next.position(), *next_uav]], node.place(), false, &mut worst);
+        }
+        worst
+    }
+
+    /// Looks at the straight ways of load and UAV `from` one place `to` another, and at the cable
+    /// between them on its way; keeps the worst of each region and of the leg of `place`.
+    pub(super) fn look(&self, [from, to]: &[Ends; 2], place: Place, is_before: bool, worst: &mut Vec<Breach>) {
+        // The cable goes sideways.
+        let steps = (length(&(to[0] - from[0])) / STEP).ceil().max(1.0);
+        let cable = |step: u32| [0, 1].map(|end| from[end] + (to[end] - from[end]) * (f64::from(step) / steps));
+        let cables = (0..steps as u32).map(|step| ("the cable", cable(step)));
+        let bodies = [("the load", [from[0], to[0]]), ("the UAV", [from[1], to[1]])];
+        let ways: Vec<_> = bodies.into_iter().chain(cables).collect();
+        let inside = self.inside.iter().map(|region| (true, region)).enumerate();
+        for (region, (is_inside, shape)) in
+            inside.chain(self.outside.iter().map(|region| (false, region)).enumerate())
+        {
+            let shape = shape.as_flown(is_inside);
+            for &(what, way) in &ways {
+                // On the edge is over it.
+                let Some(distance) = shape.breach(&way, self.margin_m) else { continue };
+                let breach = Breach { what, is_inside, region, distance, margin: self.margin_m, is_before, place };
+                let same = |other: &&mut Breach| {
+                    (other.is_inside, other.region, other.is_before, other.place.leg)
+                        == (is_inside, region, is_before, place.leg)
+                };
+                match worst.iter_mut().find(same) {
+                    Some(known) if known.distance <= distance => {}
+                    Some(known) => *known = breach,
+                    None => worst.push(breach),
                 }
             }
         }
-        worst
     }
 }
 

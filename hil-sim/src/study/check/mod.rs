@@ -17,6 +17,7 @@ mod report;
 pub mod route;
 pub mod steady;
 pub mod walk;
+pub mod way;
 
 pub use demand::{Demand, Range};
 pub use fence::{Breach, Fence};
@@ -25,6 +26,7 @@ pub use limits::Limits;
 pub use refusal::{Place, Reason, Refusal};
 pub use route::{Leg, Legs};
 pub use steady::Steady;
+pub use way::way_breaches;
 
 use controller::{Path, Vector3, Vehicle};
 use probe::{Frame, Motion, at_speed, length, prescribed_speed, yaw};
