@@ -93,7 +93,7 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
         (Some(Fault::NoPath), _) => "no point of the path found",
         (Some(Fault::Slack), _) => "cable slack, or below VEH_ROD",
         (Some(Fault::PayloadLost), _) => "payload lost",
-        (Some(Fault::Contradiction), _) => "load measured out of reach",
+        (Some(Fault::Contradiction), _) => "load measured in contradiction",
         (Some(Fault::Caught), _) => "UAV hangs from a caught load",
         (Some(_), _) => "another fault",
         (None, _) => "",

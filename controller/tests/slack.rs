@@ -3,9 +3,9 @@
 //! equation with the library's model of a taut rod.
 
 use controller::{
-    ActuatorLimits, ApproachLimits, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains, Margin,
-    Matrix3, Measured, Mode, ObserverParams, Path, Policy, Request, Sampling, State, Supervisor, Uav, Vector3,
-    Vehicle, VehicleParams,
+    ActuatorLimits, ApproachLimits, Channel, Circle, Command, Curve, EnvelopeParams, Fault, Follow, Follower, Gains,
+    Margin, Matrix3, Measured, Mode, ObserverParams, Path, Policy, Request, Sampling, State, Supervisor, Uav,
+    Vector3, Vehicle, VehicleParams,
 };
 
 type V = Vector3<f64>;
@@ -316,14 +316,17 @@ fn a_load_that_is_not_seen_for_two_seconds_costs_no_height() {
     assert_eq!(flight.supervisor.mode(), Mode::Follow);
 }
 
-/// For two seconds of following the load is measured elsewhere: at the origin, or where it was. The
-/// UAV knows better, since no cable reaches that far, and holds.
+/// For two seconds of following the load is measured elsewhere, at the origin or where it was, or
+/// moves as it did. The UAV knows better, since no cable reaches that far, or the load is not where
+/// that leads, and holds.
 #[test]
 fn a_load_that_is_measured_wrong_for_two_seconds_costs_no_height() {
     type Wrong = fn(&State<f32>, &State<f32>) -> State<f32>;
     let at_the_origin: Wrong = |now, _| State { position: Vector3::zeros(), velocity: Vector3::zeros(), ..*now };
     let where_it_was: Wrong = |now, then| State { position: then.position, velocity: then.velocity, ..*now };
-    for (name, wrong) in [("at the origin", at_the_origin), ("where it was", where_it_was)] {
+    let as_it_did: Wrong = |now, then| State { velocity: then.velocity, ..*now };
+    for (name, wrong) in [("at the origin", at_the_origin), ("where it was", where_it_was), ("as it did", as_it_did)]
+    {
         let mut flight = hanging(PAPER, 10.0);
         for _ in 0..5000 {
             flight.step(Request::Follow);
@@ -349,6 +352,104 @@ fn a_load_that_is_measured_wrong_for_two_seconds_costs_no_height() {
         println!("{name}: {lost:.2} m lost");
         assert!(lost < 1.0, "{name}: {lost} m lost");
         assert_eq!(last, Some(Mode::Follow), "{name}");
+    }
+}
+
+/// For two seconds of following attitude or body rate is not measured: each is found from the
+/// other, and the UAV holds. An accelerometer that reads zeros changes nothing.
+#[test]
+fn an_attitude_or_a_body_rate_that_is_lost_for_two_seconds_costs_no_height() {
+    type Wrong = fn(&mut State<f32>, &mut Vector3<f32>);
+    let no_attitude: Wrong = |state, _| state.attitude.fill(f32::NAN);
+    let no_body_rate: Wrong = |state, _| state.body_rate.fill(f32::NAN);
+    let no_specific_force: Wrong = |_, specific| specific.fill(0.0);
+    for (name, wrong, channel) in [
+        ("attitude", no_attitude, Some(Channel::Attitude)),
+        ("body rate", no_body_rate, Some(Channel::BodyRate)),
+        ("specific force", no_specific_force, None),
+    ] {
+        let mut flight = hanging(PAPER, 10.0);
+        for _ in 0..5000 {
+            flight.step(Request::Follow);
+        }
+        let height = flight.world.uav.position.z;
+        let mut lost = 0.0_f64;
+        let mut last = None;
+        let mut before = flight.world.uav.velocity;
+        for step in 0..16_000 {
+            let (mut uav, mut state) = (flight.uav(), flight.state());
+            let acceleration = (flight.world.uav.velocity - before) / PERIOD;
+            before = flight.world.uav.velocity;
+            let specific = flight.world.uav.attitude.transpose() * (acceleration - V::new(0.0, 0.0, 9.81));
+            let mut specific: Vector3<f32> = specific.map(|a| a as f32);
+            if step < 1000 {
+                wrong(&mut state, &mut specific);
+                (uav.attitude, uav.body_rate) = (state.attitude, state.body_rate);
+            }
+            let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: Some(specific) };
+            let output = flight.supervisor.step(measured, Request::Follow);
+            flight.world.advance(&output.command);
+            lost = lost.max(flight.world.uav.position.z - height);
+            if step == 999 {
+                let mode = if channel.is_some() { Mode::Hold } else { Mode::Follow };
+                assert_eq!((output.mode, output.fault), (mode, channel.map(Fault::State)), "{name}");
+            }
+            last = Some(output.mode);
+        }
+        println!("{name}: {lost:.2} m lost");
+        assert!(lost < 1.0, "{name}: {lost} m lost");
+        assert_eq!(last, Some(Mode::Follow), "{name}");
+    }
+}
+
+/// For two seconds of following the UAV's own position jumps, alone or with the load's. Alone it
+/// is not believed; with the load's it is, since then it is their origin that has moved.
+#[test]
+fn a_jump_of_position_does_not_end_the_following() {
+    for (name, jump, of_load) in [("UAV", 20.0, false), ("both", 0.5, true)] {
+        let mut flight = hanging(PAPER, 10.0);
+        for _ in 0..5000 {
+            flight.step(Request::Follow);
+        }
+        for step in 0..2000 {
+            let (mut uav, mut state) = (flight.uav(), flight.state());
+            if step < 1000 {
+                uav.position.x += jump;
+                state.position.x += if of_load { jump } else { 0.0 };
+            }
+            let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: None };
+            let output = flight.supervisor.step(measured, Request::Follow);
+            flight.world.advance(&output.command);
+            assert_eq!((output.mode, output.fault), (Mode::Follow, None), "{name}, step {step}");
+        }
+    }
+}
+
+/// In hold the UAV's own position, or the load's with it, jumps for three seconds by 10 m. The
+/// vehicle stays where it is.
+#[test]
+fn a_jump_of_position_does_not_move_the_hold() {
+    for of_load in [false, true] {
+        let mut flight = hanging(PAPER, 10.0);
+        for _ in 0..1000 {
+            flight.step(Request::Hold);
+        }
+        let place = flight.world.uav.position;
+        let mut moved = 0.0_f64;
+        for step in 0..5000 {
+            let (mut uav, mut state) = (flight.uav(), flight.state());
+            if step < 1500 {
+                uav.position.z += 10.0;
+                state.position.z += if of_load { 10.0 } else { 0.0 };
+            }
+            let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: None };
+            let output = flight.supervisor.step(measured, Request::Hold);
+            flight.world.advance(&output.command);
+            assert_eq!(output.mode, Mode::Hold);
+            moved = moved.max(norm(&(flight.world.uav.position - place)));
+        }
+        println!("with the load's {of_load}: {moved:.3} m");
+        assert!(moved < 0.3, "with the load's {of_load}: {moved} m");
     }
 }
 

@@ -149,6 +149,34 @@ def landing_by_the_rod():
         close(E3 * (car.m_q * car.g) - given, q * (-share * car.m_l * car.g), 1e-12, "(14.7)")
 
 
+@covers("14.10")
+def turning():
+    # A body that turns about a fixed axis: its rate is found from the attitude as by a filter of 20/s, and
+    # the attitude from its rate.
+    h, axis, rate = 0.001, Vec(1.0, 2.0, -2.0) / 3.0, 1.3
+
+    def turned(b, angle):
+        """R Exp(axis angle), by columns."""
+        k, sin, cos = list(axis), math.sin(angle), math.cos(angle)
+        cross = [[0.0, -k[2], k[1]], [k[2], 0.0, -k[0]], [-k[1], k[0], 0.0]]
+        m = [[(i == j) * cos + sin * cross[i][j] + (1 - cos) * k[i] * k[j] for j in range(3)] for i in range(3)]
+        return [b[0] * m[0][j] + b[1] * m[1][j] + b[2] * m[2][j] for j in range(3)]
+
+    truth, found = [E1, E2, E3], Vec(0.0, 0.0, 0.0)
+    for _ in range(100):
+        angle = found.dot(axis) * h
+        before, truth = turned(truth, angle), turned(truth, rate * h)
+        m = [[before[i].dot(truth[j]) for j in range(3)] for i in range(3)]
+        off = Vec(m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]) / 2.0
+        found = found + off * 20.0
+    close(found, axis * (rate * (1 - (1 - 20 * h) ** 100)), 1e-6, "(14.10), the rate")
+    led = [E1, E2, E3]
+    for _ in range(100):
+        led = turned(led, rate * h)
+    for column, wanted in zip(led, truth):
+        close(column, wanted, 1e-12, "(14.10), the attitude")
+
+
 @covers("15.2", "15.3", "15.4", "15.5", "15.6")
 def curves():
     # (15.2) by differences.

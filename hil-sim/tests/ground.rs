@@ -343,9 +343,26 @@ fn a_load_on_a_long_rope_is_set_down_in_its_place_in_gusts() {
 #[test]
 fn the_campaign_from_ground_to_ground_lands_in_its_place() {
     let campaign = Campaign::parse(campaign::builtin("ground-to-ground").expect("it is built in")).unwrap();
-    let rows: Vec<_> = (0..12)
+    land_in_place(&campaign, 12);
+    // What was drawn is as various as the campaign says.
+    let lengths: Vec<f64> =
+        (0..200).map(|run| campaign.draw(Seed { batch: 3, run }).unwrap().scenario.vehicle.rod_length).collect();
+    assert!(lengths.iter().any(|length| *length < 1.0) && lengths.iter().any(|length| *length > 12.0));
+}
+
+/// The same without a sensor on the load.
+#[test]
+fn the_campaign_on_satellite_fixes_lands_in_its_place() {
+    let campaign = Campaign::parse(campaign::builtin("ground-to-ground-rtk").expect("it is built in")).unwrap();
+    assert!(campaign.draw(Seed { batch: 3, run: 0 }).unwrap().scenario.estimator.is_some());
+    land_in_place(&campaign, 6);
+}
+
+/// Flies the first `runs` of the campaign: all land softly, with the load in its place.
+fn land_in_place(campaign: &Campaign, runs: u64) {
+    let rows: Vec<_> = (0..runs)
         .map(|run| {
-            let row = fly_run(&campaign, Seed { batch: 3, run }, Control::alone(), None);
+            let row = fly_run(campaign, Seed { batch: 3, run }, Control::alone(), None);
             row.unwrap().expect("nobody interrupts it")
         })
         .collect();
@@ -357,8 +374,4 @@ fn the_campaign_from_ground_to_ground_lands_in_its_place() {
     let summary = campaign::summarize(3, rows.into_iter().map(Ok::<_, ()>)).unwrap().0;
     assert_eq!((summary.success_rate, summary.crashed, summary.lost), (1.0, 0, 0));
     assert!(summary.worst_load_place_m.is_some_and(|distance| distance < IN_PLACE));
-    // What was drawn is as various as the campaign says.
-    let lengths: Vec<f64> =
-        (0..200).map(|run| campaign.draw(Seed { batch: 3, run }).unwrap().scenario.vehicle.rod_length).collect();
-    assert!(lengths.iter().any(|length| *length < 1.0) && lengths.iter().any(|length| *length > 12.0));
 }

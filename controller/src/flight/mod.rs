@@ -6,5 +6,7 @@ pub(crate) mod fence;
 pub(crate) mod footing;
 pub(crate) mod landing;
 pub(crate) mod mode;
+pub(crate) mod motion;
 pub(crate) mod payload;
 pub(crate) mod supervisor;
+pub(crate) mod turning;

@@ -66,7 +66,8 @@ pub enum Fault {
     Slack,
     /// The payload is gone.
     PayloadLost,
-    /// Load, rod and UAV are measured where no cable of this length could have them together.
+    /// Load, rod and UAV are measured where no cable of this length could have them together, or
+    /// the load where its velocity does not lead.
     Contradiction,
     /// A landing UAV was carried by what it does not stand on: by its cable, with the load caught
     /// on the way down.

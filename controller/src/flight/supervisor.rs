@@ -1,6 +1,6 @@
 //! The law, supervised: modes, envelope, faults, and a command for every input.
 
-use model::{Command, Disturbance, OutOfRange, Real, State, Uav, is_within};
+use model::{Channel, Command, Disturbance, OutOfRange, Real, State, Uav, is_within};
 use nalgebra::Vector3;
 
 use crate::error::Refused;
@@ -9,7 +9,9 @@ use crate::flight::envelope::{Envelope, EnvelopeParams, Standing};
 use crate::flight::footing::{Carried, Footing};
 use crate::flight::landing::{Aim, Landing};
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output, Policy, Request};
+use crate::flight::motion::Motion;
 use crate::flight::payload::Payload;
+use crate::flight::turning::{LED, mended};
 use crate::law::Law;
 use crate::law::approach::{ApproachLimits, Pace};
 use crate::law::hold::Hold;
@@ -93,10 +95,12 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     fault: Option<Fault>,
     /// The last command was the law's.
     is_by_law: bool,
-    /// Time without a good state, and of calm in hold, s.
+    /// Time without a good state, without attitude or body rate, and of calm in hold, s.
     blind: T,
+    unturned: T,
     calm: T,
     envelope: Envelope<T>,
+    motion: Motion<T>,
     cable: Cable<T>,
     payload: Payload<T>,
     landing: Landing<T>,
@@ -138,6 +142,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             request: Request::Off,
             fault: None,
             is_by_law: false,
+            motion: Motion::new(period),
             cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
@@ -145,6 +150,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             trim: Vector3::zeros(),
             from: T::zero(),
             blind: T::zero(),
+            unturned: T::zero(),
             calm: T::zero(),
         })
     }
@@ -257,17 +263,24 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             self.mode = Mode::Off;
         }
         self.is_by_law = false;
+        self.motion.pass();
         let uav = measured.uav.filter(|uav| uav.check().is_ok());
         let fault = match measured.state {
             None => Fault::NoState,
             Some(state) => match state.check() {
-                Err(channel) => Fault::State(channel),
-                Ok(()) if self.is_contradicted(state, uav) => {
-                    // Nor was the last state one to carry on.
-                    self.blind = self.blind.max(self.policy.coast);
-                    Fault::Contradiction
+                Ok(()) => match self.believe(state, uav) {
+                    Ok(uav) => {
+                        self.unturned = T::zero();
+                        return self.with_load(state, uav, measured.specific_force);
+                    }
+                    Err(fault) => fault,
+                },
+                Err(channel) => {
+                    if let Some(output) = self.mended(state, channel, &measured) {
+                        return output;
+                    }
+                    Fault::State(channel)
                 }
-                Ok(()) => return self.with_load(state, uav, measured.specific_force),
             },
         };
         self.blind += self.sampler.period();
@@ -283,21 +296,42 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
     }
 
-    /// Whether the load is measured in flight where it can't hang from the UAV.
-    fn is_contradicted(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> bool {
-        let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle);
-        uav.is_some_and(|uav| {
-            let line = state.position - uav.position;
-            is_flying && self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod)
-        })
+    /// The UAV's own navigation, unless the load's is to be believed rather. Where both have jumped
+    /// what they are measured from has moved.
+    ///
+    /// # Errors
+    /// The load is measured in flight where it can't hang from the UAV, or does not move as its
+    /// velocity says.
+    #[inline]
+    fn believe<'a>(&mut self, state: &State<T>, uav: Option<&'a Uav<T>>) -> Result<Option<&'a Uav<T>>, Fault> {
+        let Some(uav) = uav else { return Ok(None) };
+        if matches!(self.mode, Mode::Off | Mode::Idle) {
+            return Ok(Some(uav));
+        }
+        match self.motion.is_off(state, uav) {
+            [false, true] if self.is_hung() => return Ok(None),
+            [true, false] => return Err(Fault::Contradiction),
+            _ => {}
+        }
+        let line = state.position - uav.position;
+        if self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod) {
+            // Nor was the last state one to carry on.
+            self.blind = self.blind.max(self.policy.coast);
+            return Err(Fault::Contradiction);
+        }
+        Ok(Some(uav))
+    }
+
+    /// Whether load and UAV are a cable's length apart, in flight.
+    fn is_hung(&self) -> bool {
+        let is_flying = matches!(self.mode, Mode::Join | Mode::Follow | Mode::Hold | Mode::Land);
+        is_flying && !self.cable.is_slack() && !self.landing.is_set_down()
     }
 
     /// Whether the model can say what has become of the last state: not for long, and only with a
     /// cable that pulls.
     fn may_carry(&self) -> bool {
-        let is_flying = matches!(self.mode, Mode::Join | Mode::Follow | Mode::Hold | Mode::Land);
-        let is_taut = !self.cable.is_slack() && !self.landing.is_set_down();
-        is_flying && is_taut && self.blind <= self.policy.coast
+        self.is_hung() && self.blind <= self.policy.coast
     }
 
     /// A step on what the model makes of the last state. Its `fault` is this step's alone: states
@@ -310,6 +344,27 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
         self.change_mode(Some(&state), uav);
         let output = self.fly(&state, uav);
+        Some(Output { fault: output.fault.or(Some(fault)), ..output })
+    }
+
+    /// A step on a state of which attitude or body rate is missing, from the other of them. It is
+    /// good enough for hold.
+    #[cold]
+    fn mended(&mut self, state: &State<T>, channel: Channel, measured: &Measured<'_, T>) -> Option<Output<T>> {
+        let (fault, period) = (Fault::State(channel), self.sampler.period());
+        self.unturned += period;
+        let may_lead = channel == Channel::BodyRate || self.unturned <= T::lit(LED);
+        if matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault) || self.blind > T::zero() || !may_lead {
+            return None;
+        }
+        let state = mended(state, channel, &self.sampler.carry(), period)?;
+        let uav = measured.uav.map(|uav| Uav { attitude: state.attitude, body_rate: state.body_rate, ..*uav });
+        let uav = self.believe(&state, uav.as_ref().filter(|uav| uav.check().is_ok())).ok()?;
+        if self.unturned > self.policy.coast && matches!(self.mode, Mode::Join | Mode::Follow) {
+            self.enter_hold(&self.now(&state, uav), Some(fault));
+        }
+        self.calm = T::zero();
+        let output = self.with_load(&state, uav, measured.specific_force);
         Some(Output { fault: output.fault.or(Some(fault)), ..output })
     }
 
@@ -372,6 +427,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// Forgets what was known of cable and payload, at `state` under `thrust`.
     #[inline(never)]
     fn begin(&mut self, state: &State<T>, thrust: T) {
+        self.motion.forget();
         self.cable.begin(self.sampler.vehicle(), state, thrust);
         self.payload.leave();
         self.trim = Vector3::zeros();

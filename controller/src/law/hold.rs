@@ -20,7 +20,8 @@
 //! which stays where it is, r* is where the UAV would be in still air: in a, r + l stands for r.
 //!
 //! The target r* starts at the UAV and at its level velocity, which it loses over 1/p; a fall is
-//! stopped as hard as the rotors can.
+//! stopped as hard as the rotors can. A position that jumps takes its target along: what has moved
+//! then is where it is measured from.
 
 use model::{Command, Real, State, Uav, Vehicle, is_within};
 use nalgebra::Vector3;
@@ -40,6 +41,10 @@ const LEANING: f64 = 2.0;
 const LEAN: f64 = 0.3;
 /// Largest position error that counts, m.
 const REACH: f64 = 2.0;
+/// A position that is further from the last than this, m, and than it could have flown in this
+/// time, s, has jumped.
+const JUMP: f64 = 0.3;
+const JUMP_TIME: f64 = 0.2;
 /// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
 /// stays below this, m/s².
 const SETTLING: f64 = 1.0;
@@ -85,6 +90,8 @@ pub(crate) struct Hold<T> {
     swing_rate: T,
     swing_offset: T,
     target: Vector3<T>,
+    /// Where the UAV was last, m.
+    last: Vector3<T>,
     /// What the target's rounding has left out: its steps may be smaller than its last digit.
     remainder: Vector3<T>,
     velocity: Vector3<T>,
@@ -119,6 +126,7 @@ impl<T: Real> Hold<T> {
             swing_rate: damping * T::lit(2.0) - yielding,
             swing_offset: damping * pole * T::lit(4.0) * (params.rod_length / T::lit(LONG)).min(T::one()),
             target: uav.position + lean,
+            last: uav.position,
             remainder: Vector3::zeros(),
             velocity: level(&uav.velocity),
             integral: Vector3::zeros(),
@@ -162,6 +170,7 @@ impl<T: Real> Hold<T> {
     ) -> Command<T> {
         let params = vehicle.params();
         let Uav { position, velocity: uav_velocity, attitude, body_rate: omega } = uav;
+        self.follow_jump(position, uav_velocity);
         let (mut yielding, mut leaning) = (Vector3::zeros(), Vector3::zeros());
         if let Some(Swing { offset, rate, lean }) = swing {
             leaning = (lean - self.lean) * T::lit(LEANING);
@@ -217,6 +226,17 @@ impl<T: Real> Hold<T> {
         Command {
             thrust: body.z.max(T::zero()),
             torque: inertia.component_mul(&omega_dot) + omega.cross(&inertia.component_mul(omega)),
+        }
+    }
+
+    /// Has the target jump with the `position`, m, of a UAV at `velocity`, m/s.
+    fn follow_jump(&mut self, position: &Vector3<T>, velocity: &Vector3<T>) {
+        let moved = position - self.last;
+        self.last = *position;
+        let flown = velocity.dot(velocity).sqrt() * T::lit(JUMP_TIME);
+        let most = T::lit(JUMP).max(flown);
+        if !is_within(&moved, most * most) {
+            self.target += moved;
         }
     }
 

@@ -6,7 +6,8 @@
 //! ```
 //!
 //! with T the thrust that is applied, discretized with both poles at e^(−o h); or, where an
-//! accelerometer tells the specific force f_B, f follows R f_B + (T/m_Q) b3 with the bandwidth o.
+//! accelerometer tells the specific force f_B and that leads to v_Q, f follows R f_B + (T/m_Q) b3
+//! with the bandwidth o.
 
 use model::{Real, Vehicle, is_within};
 use nalgebra::{Matrix3, Vector3};
@@ -17,8 +18,12 @@ const BANDWIDTH: f64 = 10.0;
 /// is vertical: a cable pulls down, wind sideways, and nothing lifts.
 const STRONGEST: f64 = 3.0;
 const LEVEL: f64 = 0.3;
-/// Largest specific force, m/s², that an accelerometer is believed.
+/// Largest specific force, m/s², that an accelerometer is believed; and while the velocity is no
+/// further from where that leads than this, m/s, a difference being forgotten over this time, s: one
+/// that is wrong by 1 m/s² for ever is let pass, and so is the jolt of a cable that pulls taut.
 const MOST_SPECIFIC: f64 = 200.0;
+const OFF: f64 = 0.5;
+const FORGOTTEN: f64 = 0.5;
 
 /// The observer of the pull on the UAV.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +35,8 @@ pub(crate) struct Pull<T> {
     /// v̂ at the last sample, and f, both in N.
     velocity: Vector3<T>,
     force: Vector3<T>,
+    /// Where the specific force has led the velocity, m/s.
+    led: Vector3<T>,
 }
 
 impl<T: Real> Pull<T> {
@@ -44,18 +51,20 @@ impl<T: Real> Pull<T> {
             period,
             velocity: Vector3::zeros(),
             force: Vector3::zeros(),
+            led: Vector3::zeros(),
         }
     }
 
     /// The same with no more than the bandwidth `most`, rad/s, from now on.
     pub(crate) fn with_bandwidth(self, period: T, most: T) -> Self {
-        Self { velocity: self.velocity, force: self.force, ..Self::new(period, most) }
+        Self { velocity: self.velocity, force: self.force, led: self.led, ..Self::new(period, most) }
     }
 
     /// Starts at `velocity`, with a pull of `force` (m/s², per UAV mass).
     pub(crate) fn start(&mut self, velocity: &Vector3<T>, force: Vector3<T>) {
         self.velocity = *velocity;
         self.force = force;
+        self.led = *velocity;
     }
 
     /// Goes on at `velocity`, with the pull as it is.
@@ -89,8 +98,16 @@ impl<T: Real> Pull<T> {
         if !is_within(specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC)) {
             return self.sample(vehicle, velocity, attitude, thrust);
         }
+        let specific = attitude * specific;
+        let mut led = self.led + specific * self.period;
+        led.z += vehicle.params().gravity * self.period;
+        let off = velocity - led;
+        self.led = led + off * (self.period * T::lit(1.0 / FORGOTTEN));
+        if !is_within(&off, T::lit(OFF * OFF)) {
+            return self.sample(vehicle, velocity, attitude, thrust);
+        }
         let b3: Vector3<T> = attitude.column(2).into();
-        let pull = attitude * specific + b3 * (thrust / vehicle.params().uav_mass);
+        let pull = specific + b3 * (thrust / vehicle.params().uav_mass);
         self.force += (pull - self.force) * self.follow_gain;
         self.velocity = *velocity;
     }

@@ -17,6 +17,7 @@ use super::{Common, Ended, Logs, many, many::Many};
 pub const EXAMPLES: &str = "Examples:
   hil-sim campaign                               following a circle against everything at once
   hil-sim campaign ground-to-ground              take-off with a slack cable, a path, landing
+  hil-sim campaign ground-to-ground-rtk          the same without a sensor on the load
   hil-sim campaign my.toml --runs 1000 --seed 7 --jobs 2 --out results
   hil-sim campaign my.toml --out results         again: goes on where it was interrupted
   hil-sim campaign my.toml --replay 412          flight 412 again, with its full log
@@ -34,7 +35,8 @@ pub const MERGE_EXAMPLES: &str = "Examples:
 /// What to fly.
 #[derive(Args)]
 pub struct CampaignArguments {
-    /// Campaign file, or the name of a built-in one: campaign (if left out), ground-to-ground.
+    /// Campaign file, or the name of a built-in one: campaign (if left out), ground-to-ground,
+    /// ground-to-ground-rtk.
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Flights; as the file says if left out.

@@ -104,6 +104,13 @@ const WALKED: usize = 64;
 pub const BUILTIN: &[(&str, &str)] = &[
     ("campaign", include_str!("../../../scenarios/campaign.toml")),
     ("ground-to-ground", include_str!("../../../scenarios/ground-to-ground.toml")),
+    (
+        "ground-to-ground-rtk",
+        concat!(
+            include_str!("../../../scenarios/ground-to-ground.toml"),
+            include_str!("../../../scenarios/on-rtk.toml")
+        ),
+    ),
 ];
 
 /// The text of the built-in campaign of this name, if there is one.
