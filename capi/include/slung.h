@@ -59,7 +59,8 @@ enum slung_status {
     SLUNG_UNKNOWN_ENUMERATOR = -11,
     SLUNG_NO_ROUTE = -12,
     SLUNG_LATE = -13,
-    SLUNG_OUTLIER = -14
+    SLUNG_OUTLIER = -14,
+    SLUNG_NOT_NOW = -15
 };
 
 /* What the pilot wants, as uint32_t. */
@@ -166,7 +167,7 @@ typedef struct slung_waypoint {
     float corner_m;  /* where a corner's blend begins and ends, 0.02 to 1000; 0: the curve passes smoothly through the point */
     float speed_m_s; /* of the leg that begins here, 0.05 to 100 */
     float yaw_rad;   /* not a number: along the route */
-    float stop_s;    /* how long the payload rests here; negative: it passes */
+    float stop_s;    /* how long the payload rests here, INFINITY: until slung_go_on; negative: it passes */
 } slung_waypoint;
 
 /* How a route is sped up and slowed down. */
@@ -227,6 +228,7 @@ typedef struct slung_error {
     float value;    /* what it was given */
     float min;      /* the least that it takes */
     float max;      /* the largest */
+    int32_t waypoint; /* of a route, from 0; negative: it is about none */
 } slung_error;
 
 /* An entry of the table of parameters. Set struct_size to sizeof(slung_parameter) before the call. */
@@ -306,6 +308,17 @@ typedef struct slung_output {
     float rotor[4];                           /* speeds as shares of the largest: front right, rear left, front left, rear right */
 } slung_output;
 
+/* How far a route is flown. Set struct_size to sizeof(slung_progress) before the call. */
+typedef struct slung_progress {
+    uint32_t struct_size;
+    uint32_t run;           /* from stop to stop, counted from 0 */
+    uint32_t runs;          /* how many there are */
+    uint32_t rests;         /* 1 while the payload rests at a stop */
+    uint32_t is_over;       /* 1 once it has rested at the last stop for as long as it is to */
+    float speed_factor;     /* what the prescribed speed is multiplied by now */
+    float nearest_ned_m[3]; /* the route's point nearest to the payload */
+} slung_progress;
+
 /* Where a command came from. Set struct_size to sizeof(slung_telemetry) before the call. */
 typedef struct slung_telemetry {
     uint32_t struct_size;
@@ -383,7 +396,17 @@ int32_t slung_route_build(slung_route *route, size_t bytes, const slung_waypoint
                           uint32_t run_count, slung_error *error);
 /* At the last stop: the way back and forth again (back = 1), or the first run again (0), so many times; 0 times is to stay. */
 int32_t slung_route_repeat(slung_route *route, uint32_t times, uint32_t back);
+/* Lands where the route ends (1), or hovers there (0): SLUNG_FOLLOW then lands once the payload has rested at the last stop. Before
+ * slung_create_on. */
+int32_t slung_route_land(slung_route *route, uint32_t lands);
 size_t slung_route_bytes(void);
+/* Flies the path at factor times its speed from now on, smoothly: 1 as prescribed, 0 rests where it is, less goes back; -2 to 2. */
+int32_t slung_set_speed_factor(slung_controller *controller, float factor);
+/* Goes on from the stop where the payload rests, before its time is over or where it waits for this (stop_s = INFINITY). SLUNG_NOT_NOW:
+ * it does not rest at a stop, or nothing comes after. */
+int32_t slung_go_on(slung_controller *controller);
+/* How far the controller's route is flown. SLUNG_NOT_NOW: it flies none. */
+int32_t slung_progress_of(slung_controller *controller, slung_progress *progress);
 
 /* Makes an estimator of the parameters' vehicle, stepped at their CTL_PERIOD (1 to 10 ms). mounting may be NULL: hook and
  * accelerometer at the centre of mass, no drag. */

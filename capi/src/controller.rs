@@ -2,7 +2,7 @@
 
 use core::mem::size_of;
 
-use controller::{Command, Frames, Measured, Refused, Request, Route, State, Vector3};
+use controller::{Command, Frames, Measured, Mode, Refused, Request, State, Vector3};
 use rig::{Rig, SetupError};
 
 use crate::frames::{frames, uav};
@@ -12,7 +12,7 @@ use crate::pointer::{Sized32, exclusive, optional, shared, write_sized};
 use crate::route::StoredRoute;
 use crate::status::{Status, code, setup, tell};
 use crate::text::{fault_code, margin_code, mode_code};
-use crate::types::{SlungError, SlungOutput, SlungState, SlungTelemetry, SlungUav, SlungWrench};
+use crate::types::{SlungError, SlungOutput, SlungProgress, SlungState, SlungTelemetry, SlungUav, SlungWrench};
 
 /// Written by [`slung_create`]; anything else is memory in which no controller is.
 const CREATED: u32 = 0x51A6_C081;
@@ -90,14 +90,15 @@ pub unsafe extern "C" fn slung_create_on(
             // SAFETY: the caller's promise.
             unsafe { tell(error, status, field, numbers) }
         };
-        let path = if route.is_null() {
-            path::of(parameters).map_err(|error| refused(error.into()))?
+        let (path, lands) = if route.is_null() {
+            (path::of(parameters).map_err(|error| refused(error.into()))?, false)
         } else {
             // SAFETY: the caller's promise.
-            let (table, end) = unsafe { shared(route)? }.parts()?;
-            FlownPath::Route(Route::new(table).map_err(|error| refused(error.into()))?.with_end(end))
+            let stored = unsafe { shared(route)? }.check()?;
+            (FlownPath::Route(stored.route().map_err(|error| refused(error.into()))?), stored.lands())
         };
         let rig = Rig::on(path, parameters).map_err(refused)?;
+        let rig = if lands { rig.landing_at_end() } else { rig };
         // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no
         // drop.
         unsafe { controller.write(Instance { created: CREATED, request: Request::Off, rig }) };
@@ -263,6 +264,67 @@ unsafe fn answer(rig: &Controller, body_rate: Option<Vector3<f32>>, target: *mut
     };
     // SAFETY: the caller's promise.
     unsafe { write_sized(target, &told, SlungOutput::SIZE) }
+}
+
+/// Flies the path at another factor of its speed, smoothly: 0 rests anywhere, less goes back.
+///
+/// # Safety
+/// As [`slung_take_over`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_set_speed_factor(controller: *mut Instance, factor: f32) -> i32 {
+    let set = || {
+        // SAFETY: the caller's promise.
+        let rig = unsafe { exclusive(controller)? }.rig()?;
+        if !(-2.0..=2.0).contains(&factor) {
+            return Err(Status::OutOfRange);
+        }
+        rig.set_speed_factor(factor);
+        Ok(())
+    };
+    code(set())
+}
+
+/// Goes on from the stop where the payload rests.
+///
+/// # Safety
+/// As [`slung_take_over`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_go_on(controller: *mut Instance) -> i32 {
+    let go_on = || {
+        // SAFETY: the caller's promise.
+        let rig = unsafe { exclusive(controller)? }.rig()?;
+        let is_following = rig.mode() == Mode::Follow;
+        let law = rig.following_mut().filter(|_| is_following).ok_or(Status::NotNow)?;
+        if law.go_on() { Ok(()) } else { Err(Status::NotNow) }
+    };
+    code(go_on())
+}
+
+/// How far the route is flown.
+///
+/// # Safety
+/// As [`slung_take_over`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_progress_of(controller: *mut Instance, progress: *mut SlungProgress) -> i32 {
+    let read = || {
+        // SAFETY: the caller's promise.
+        let rig = unsafe { exclusive(controller)? }.rig()?;
+        let law = rig.following().ok_or(Status::NotNow)?;
+        let FlownPath::Route(route) = law.path() else { return Err(Status::NotNow) };
+        let is_following = rig.mode() == Mode::Follow;
+        let told = SlungProgress {
+            struct_size: SlungProgress::SIZE,
+            run: route.run() as u32,
+            runs: route.table().runs.len() as u32,
+            rests: u32::from(is_following && law.rests()),
+            is_over: u32::from(rig.is_landing_at_end() || is_following && law.is_over()),
+            speed_factor: law.speed_factor(),
+            nearest_ned_m: route.point().into(),
+        };
+        // SAFETY: the caller's promise.
+        unsafe { write_sized(progress, &told, SlungProgress::SIZE) }
+    };
+    code(read())
 }
 
 /// Turns an output's vectors, which are in forward-right-down axes, into the body axes of

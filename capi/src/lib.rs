@@ -18,8 +18,9 @@ mod text;
 pub mod types;
 
 pub use crate::controller::{
-    BYTES as CONTROLLER_BYTES, slung_controller_bytes, slung_create, slung_create_on, slung_output_in, slung_start,
-    slung_step, slung_step_measured, slung_take_over, slung_telemetry_of,
+    BYTES as CONTROLLER_BYTES, slung_controller_bytes, slung_create, slung_create_on, slung_go_on, slung_output_in,
+    slung_progress_of, slung_set_speed_factor, slung_start, slung_step, slung_step_measured, slung_take_over,
+    slung_telemetry_of,
 };
 pub use crate::estimator::{
     BYTES as ESTIMATOR_BYTES, slung_estimator_bytes, slung_estimator_create, slung_estimator_observe,
@@ -35,7 +36,9 @@ pub use crate::parameters::{
     BYTES as PARAMETERS_BYTES, slung_parameter_count, slung_parameter_info, slung_parameters_bytes,
     slung_parameters_default, slung_parameters_get, slung_parameters_set,
 };
-pub use crate::route::{BYTES as ROUTE_BYTES, slung_route_build, slung_route_bytes, slung_route_repeat};
+pub use crate::route::{
+    BYTES as ROUTE_BYTES, slung_route_build, slung_route_bytes, slung_route_land, slung_route_repeat,
+};
 pub use crate::status::Status;
 pub use crate::text::{slung_fault_text, slung_mode_text, slung_status_text, slung_warning_text};
 

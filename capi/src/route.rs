@@ -2,10 +2,12 @@
 
 use core::mem::{align_of, size_of};
 
-use controller::{Built, End, Knot, OutOfRange, RouteError, RoutePace, RouteTable, Run, Waypoint, build_route};
+use controller::{
+    Built, End, Knot, OutOfRange, Route, RouteError, RoutePace, RouteTable, Run, Waypoint, build_route,
+};
 
 use crate::pointer::{exclusive, optional, shared};
-use crate::status::{Status, code, tell};
+use crate::status::{Status, code, tell_of};
 use crate::types::{SlungError, SlungPace, SlungWaypoint};
 
 /// A table in memory that the caller keeps where it is.
@@ -21,6 +23,7 @@ pub struct StoredRoute {
     created: u32,
     table: LentTable,
     end: End,
+    lands: bool,
 }
 
 /// Bytes in the header's `slung_route`; a test compares.
@@ -34,12 +37,25 @@ const _: () = assert!(size_of::<Run<f32>>() == 2 * size_of::<usize>() + 8);
 const _: () = assert!(size_of::<Knot<f32>>() == 60);
 
 impl StoredRoute {
-    /// The table, and what is flown after it.
+    /// Itself, if there is one.
     ///
     /// # Errors
     /// [`Status::NotCreated`].
-    pub fn parts(&self) -> Result<(LentTable, End), Status> {
-        if self.created == CREATED { Ok((self.table, self.end)) } else { Err(Status::NotCreated) }
+    pub fn check(&self) -> Result<&Self, Status> {
+        if self.created == CREATED { Ok(self) } else { Err(Status::NotCreated) }
+    }
+
+    /// The route that is flown.
+    ///
+    /// # Errors
+    /// A number of the table that has changed since it was built.
+    pub fn route(&self) -> Result<Route<f32, LentTable>, OutOfRange<f32>> {
+        Ok(Route::new(self.table)?.with_end(self.end))
+    }
+
+    /// Whether it ends on the ground.
+    pub fn lands(&self) -> bool {
+        self.lands
     }
 }
 
@@ -55,19 +71,28 @@ impl From<&SlungWaypoint> for Waypoint<f32> {
     }
 }
 
-/// What a refusal is called, and value, least and largest.
-fn reason(error: &RouteError<f32>, count: usize, closed: bool, room: [usize; 2]) -> (Status, &'static str, [f32; 3]) {
+/// What a refusal is called, and value, least and largest; and the waypoint that it is about.
+fn reason(
+    error: &RouteError<f32>,
+    count: usize,
+    closed: bool,
+    room: [usize; 2],
+) -> (Status, &'static str, [f32; 3], Option<usize>) {
     let number = |count: usize| count as f32;
     match *error {
-        RouteError::Waypoint(_, OutOfRange { field, value, min, max })
-        | RouteError::Pace(OutOfRange { field, value, min, max }) => (Status::OutOfRange, field, [value, min, max]),
-        RouteError::TooFew => {
-            (Status::OutOfRange, "waypoint_count", [number(count), if closed { 3.0 } else { 2.0 }, f32::MAX])
+        RouteError::Waypoint(index, OutOfRange { field, value, min, max }) => {
+            (Status::OutOfRange, field, [value, min, max], Some(index))
         }
-        RouteError::ShortLeg(index) => (Status::NoRoute, "leg", [number(index), 0.0, 0.0]),
-        RouteError::SharpTurn(index) => (Status::NoRoute, "turn", [number(index), 0.0, 0.0]),
-        RouteError::Knots => (Status::TooSmall, "knot_count", [number(room[0]), 0.0, f32::MAX]),
-        RouteError::Runs => (Status::TooSmall, "run_count", [number(room[1]), 0.0, f32::MAX]),
+        RouteError::Pace(OutOfRange { field, value, min, max }) => {
+            (Status::OutOfRange, field, [value, min, max], None)
+        }
+        RouteError::TooFew => {
+            (Status::OutOfRange, "waypoint_count", [number(count), if closed { 3.0 } else { 2.0 }, f32::MAX], None)
+        }
+        RouteError::ShortLeg(index) => (Status::NoRoute, "leg", [number(index), 0.0, 0.0], Some(index)),
+        RouteError::SharpTurn(index) => (Status::NoRoute, "turn", [number(index), 0.0, 0.0], Some(index)),
+        RouteError::Knots => (Status::TooSmall, "knot_count", [number(room[0]), 0.0, f32::MAX], None),
+        RouteError::Runs => (Status::TooSmall, "run_count", [number(room[1]), 0.0, f32::MAX], None),
     }
 }
 
@@ -111,9 +136,9 @@ pub unsafe extern "C" fn slung_route_build(
         let (count, room) = (waypoint_count as usize, [knot_count, run_count].map(|count| count as usize));
         let is_closed = closed != 0;
         let refused = |refused: &RouteError<f32>| {
-            let (status, field, numbers) = reason(refused, count, is_closed, room);
+            let (status, field, numbers, waypoint) = reason(refused, count, is_closed, room);
             // SAFETY: the caller's promise.
-            unsafe { tell(error, status, field, numbers) }
+            unsafe { tell_of(error, status, field, numbers, waypoint) }
         };
         // The waypoints are read into the last of the knots' room.
         let free = room[0].checked_sub(count).ok_or_else(|| refused(&RouteError::Knots))?;
@@ -142,7 +167,7 @@ pub unsafe extern "C" fn slung_route_build(
         let table = RouteTable { knots: knots.get(..k).unwrap_or_default(), runs: runs.get(..r).unwrap_or_default() };
         // SAFETY: not null, aligned, and large enough by the caller's word. What was there needs no
         // drop.
-        unsafe { route.write(StoredRoute { created: CREATED, table, end: End::Stay }) };
+        unsafe { route.write(StoredRoute { created: CREATED, table, end: End::Stay, lands: false }) };
         Ok(())
     };
     code(build())
@@ -158,7 +183,7 @@ pub unsafe extern "C" fn slung_route_repeat(route: *mut StoredRoute, times: u32,
     let repeat = || {
         // SAFETY: the caller's promise.
         let route = unsafe { exclusive(route)? };
-        route.parts()?;
+        route.check()?;
         route.end = match (times, back) {
             (0, _) => End::Stay,
             (times, 0) => End::Again(times),
@@ -167,6 +192,22 @@ pub unsafe extern "C" fn slung_route_repeat(route: *mut StoredRoute, times: u32,
         Ok(())
     };
     code(repeat())
+}
+
+/// Whether the vehicle lands where the route ends.
+///
+/// # Safety
+/// `route`, if not null, points to what the header says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_route_land(route: *mut StoredRoute, lands: u32) -> i32 {
+    let land = || {
+        // SAFETY: the caller's promise.
+        let route = unsafe { exclusive(route)? };
+        route.check()?;
+        route.lands = lands != 0;
+        Ok(())
+    };
+    code(land())
 }
 
 /// How many bytes a route takes, at most the size of `slung_route`.

@@ -40,6 +40,8 @@ pub enum Status {
     Late = -13,
     /// A measurement is too far off what is known.
     Outlier = -14,
+    /// There is nothing to go on from, or to report on.
+    NotNow = -15,
 }
 
 /// `Ok` as zero.
@@ -54,7 +56,22 @@ pub fn code(outcome: Result<(), Status>) -> i32 {
 ///
 /// # Safety
 /// As [`write_sized`].
-pub unsafe fn tell(target: *mut SlungError, status: Status, field: &str, [value, min, max]: [f32; 3]) -> Status {
+pub unsafe fn tell(target: *mut SlungError, status: Status, field: &str, numbers: [f32; 3]) -> Status {
+    // SAFETY: the caller's promise.
+    unsafe { tell_of(target, status, field, numbers, None) }
+}
+
+/// The same of a `waypoint`.
+///
+/// # Safety
+/// As [`write_sized`].
+pub unsafe fn tell_of(
+    target: *mut SlungError,
+    status: Status,
+    field: &str,
+    [value, min, max]: [f32; 3],
+    waypoint: Option<usize>,
+) -> Status {
     let mut error = SlungError {
         struct_size: SlungError::SIZE,
         status: status as i32,
@@ -62,6 +79,7 @@ pub unsafe fn tell(target: *mut SlungError, status: Status, field: &str, [value,
         value,
         min,
         max,
+        waypoint: waypoint.map_or(-1, |waypoint| waypoint as i32),
     };
     // The last byte stays zero.
     for (slot, byte) in error.field.iter_mut().take(SlungError::FIELD_BYTES - 1).zip(field.bytes()) {

@@ -82,6 +82,7 @@ pub extern "C" fn slung_status_text(status: i32) -> *const c_char {
         -12 => c"the waypoints make no route: a leg is too short, or a turn too sharp",
         -13 => c"the measurement is older than the filter remembers, or from the future",
         -14 => c"the measurement is more than ten deviations off",
+        -15 => c"not now: no route is flown, or its payload does not rest at a stop that something comes after",
         _ => c"unknown status",
     };
     text.as_ptr()

@@ -18,6 +18,8 @@ pub struct SlungError {
     pub min: f32,
     /// The largest.
     pub max: f32,
+    /// Of a route, from 0; negative: none.
+    pub waypoint: i32,
 }
 
 impl SlungError {
@@ -92,6 +94,29 @@ pub struct SlungWrench {
     /// About b1, b2, b3, N·m.
     pub torque_frd_n_m: [f32; 3],
 }
+
+/// How far a route is flown: `slung_progress`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct SlungProgress {
+    /// Bytes of this structure as the caller knows it.
+    pub struct_size: u32,
+    /// From stop to stop, counted from 0.
+    pub run: u32,
+    /// How many there are.
+    pub runs: u32,
+    /// 1 while the payload rests at a stop.
+    pub rests: u32,
+    /// 1 once it has rested at the last for as long as it is to.
+    pub is_over: u32,
+    /// What the prescribed speed is multiplied by.
+    pub speed_factor: f32,
+    /// The route's point nearest to the payload, in N, m.
+    pub nearest_ned_m: [f32; 3],
+}
+
+// SAFETY: as above.
+unsafe impl Sized32 for SlungProgress {}
 
 /// A step's answer: `slung_output`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,6 +21,7 @@ int main(void) {
     FIELD(slung_error, value);
     FIELD(slung_error, min);
     FIELD(slung_error, max);
+    FIELD(slung_error, waypoint);
     SIZE(slung_parameter);
     FIELD(slung_parameter, struct_size);
     FIELD(slung_parameter, default_value);
@@ -57,6 +58,14 @@ int main(void) {
     FIELD(slung_output, thrust_normalized);
     FIELD(slung_output, torque_normalized_frd);
     FIELD(slung_output, rotor);
+    SIZE(slung_progress);
+    FIELD(slung_progress, struct_size);
+    FIELD(slung_progress, run);
+    FIELD(slung_progress, runs);
+    FIELD(slung_progress, rests);
+    FIELD(slung_progress, is_over);
+    FIELD(slung_progress, speed_factor);
+    FIELD(slung_progress, nearest_ned_m);
     SIZE(slung_telemetry);
     FIELD(slung_telemetry, struct_size);
     FIELD(slung_telemetry, law_flew);

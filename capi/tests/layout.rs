@@ -7,7 +7,7 @@ use std::process::Command;
 
 use capi::types::{
     SlungError, SlungEstimate, SlungFix, SlungMounting, SlungNavigated, SlungNavigationSettings, SlungOutput,
-    SlungPace, SlungParameter, SlungState, SlungTelemetry, SlungUav, SlungWaypoint, SlungWrench,
+    SlungPace, SlungParameter, SlungProgress, SlungState, SlungTelemetry, SlungUav, SlungWaypoint, SlungWrench,
 };
 
 /// What `layout.c` prints, by Rust.
@@ -22,12 +22,13 @@ fn layout() -> String {
         };
     }
     lay! {
-        "slung_error" SlungError { struct_size status field value min max }
+        "slung_error" SlungError { struct_size status field value min max waypoint }
         "slung_parameter" SlungParameter { struct_size default_value min max name unit text }
         "slung_uav" SlungUav { position_world_m velocity_world_m_s quaternion_body_to_world body_rate_rad_s }
         "slung_state" SlungState { payload_position_ned_m payload_velocity_ned_m_s rod_ned rod_rate_ned_1_s attitude_frd_to_ned body_rate_frd_rad_s }
         "slung_wrench" SlungWrench { thrust_n torque_frd_n_m }
         "slung_output" SlungOutput { struct_size mode fault warning limited thrust_n torque_frd_n_m angular_acceleration_frd_rad_s2 body_rate_setpoint_frd_rad_s thrust_normalized torque_normalized_frd rotor }
+        "slung_progress" SlungProgress { struct_size run runs rests is_over speed_factor nearest_ned_m }
         "slung_telemetry" SlungTelemetry { struct_size law_flew xi nu u_zeta_m_s6 zeta margin_rod margin_thrust_axis margin_lambda_m_s2 margin_kappa_1_s2 margin_path margin_reach payload_force_ned_n uav_force_ned_n torque_frd_n_m implied_payload_mass_kg }
         "slung_waypoint" SlungWaypoint { point_ned_m corner_m speed_m_s yaw_rad stop_s }
         "slung_pace" SlungPace { acceleration_m_s2 stop_rate_1_s rise_s }

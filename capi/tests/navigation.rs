@@ -45,6 +45,7 @@ const NO_ERROR: SlungError = SlungError {
     value: 0.0,
     min: 0.0,
     max: 0.0,
+    waypoint: -1,
 };
 
 /// Vectors of N and of B in the axes of an enum slung_frames.

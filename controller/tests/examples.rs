@@ -12,6 +12,8 @@ mod own_curve;
 mod rotors;
 #[path = "../examples/route.rs"]
 mod route;
+#[path = "../examples/task.rs"]
+mod task;
 #[path = "../examples/tracking.rs"]
 mod tracking;
 
@@ -24,4 +26,4 @@ macro_rules! flies {
     )*};
 }
 
-flies!(circle, fitted_loop, own_curve, rotors, route, tracking);
+flies!(circle, fitted_loop, own_curve, rotors, route, task, tracking);

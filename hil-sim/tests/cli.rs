@@ -410,6 +410,15 @@ fn a_mission_becomes_a_scenario_that_is_checked_and_flown() {
         let printed = run(&["route", "m.csv", home, option, "--quiet"]);
         assert!(printed.status.success() && text(&printed.stdout).starts_with(begin), "{option}");
     }
+    let points = text(&run(&["route", "m.csv", home, "--c", "--quiet"]).stdout);
+    assert!(points.contains("static const slung_waypoint route_points["), "{points}");
+    for (option, value, range) in [("--speed", "-2", "0.05 to 100 m/s"), ("--corner", "0", "0.02 to 1000 m")] {
+        let refused = run(&["route", "m.csv", home, option, value]);
+        assert!(!refused.status.success() && text(&refused.stderr).contains(range), "{}", text(&refused.stderr));
+    }
+    fs::write(folder.join("words.toml"), "duration_s = \"ten\"\n").expect("a file");
+    let refused = text(&run(&["check", "words.toml"]).stderr);
+    assert!(refused.contains("duration_s: ") && refused.trim_end().ends_with("expected a number"), "{refused}");
     assert!(run(&["check", "route.toml", "--quiet"]).status.success());
     assert!(run(&["run", "route.toml", "--quiet"]).status.success());
     let summary = fs::read_to_string(folder.join("out/summary.json")).expect("a summary");

@@ -202,6 +202,15 @@ class Rig:
         """One control period (`CTL_PERIOD`); None is no state this time. With `uav`, the UAV's own navigation, hold and landing fly
         that, and a vehicle on the ground takes off from a slack cable; `specific_force` is its accelerometer's, m/s^2 in body axes.
         `phase` is where the tracking law's reference is, rad."""
+    def set_speed_factor(self, factor: float) -> None:
+        """Flies the path at `factor` times its speed from now on, smoothly: 0 rests where it is, 1 goes on, less than 0 goes back; -2 to
+        2."""
+    def go_on(self) -> bool:
+        """From the stop where the payload rests, before its time is over. False: it does not rest, or nothing comes after."""
+    @property
+    def is_over(self) -> bool:
+        """Whether the payload has rested at its route's end for as long as it is to. A route with `end="land"` is landed there by itself, while
+        "follow" is asked for."""
     @property
     def mode(self) -> _Mode: ...
     @property

@@ -47,6 +47,11 @@ pub fn within(field: &str, value: f64, [min, max]: [f64; 2]) -> PyResult<()> {
     Err(refused(format!("{field} = {value} is outside {min} to {max}"), field, Some([value, min, max])))
 }
 
+/// A count of at least one, which a float is not.
+pub fn count(field: &str, value: i64) -> PyResult<u64> {
+    within(field, value as f64, [1.0, 1e8]).map(|()| value.unsigned_abs())
+}
+
 /// A word that is none of those that are `known`.
 pub fn unknown(field: &str, word: &str, known: &[&str]) -> PyErr {
     refused(format!("{field} = \"{word}\" is none of {}", known.join(", ")), field, None)

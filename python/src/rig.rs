@@ -1,7 +1,7 @@
 //! The supervised controller.
 
 use controller::{Command, Fault, Frames, Margin, Measured, Mode, Request, Vector3};
-use hil_sim::describe::course::FlownPath;
+use hil_sim::describe::course::{FlownPath, RouteSpec};
 use hil_sim::fly::fault::describe;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use rig::{RateSetpoint, SetupError, Tabled};
 
 use crate::convert::{frames, object, vector};
-use crate::error::{out_of_range, refused, unknown, whole};
+use crate::error::{out_of_range, refused, unknown, whole, within};
 use crate::parameters::Parameters;
 use crate::path::Path;
 use crate::state::{State, Uav};
@@ -48,14 +48,16 @@ pub struct Output {
 
 fn make<T: Tabled>(parameters: &rig::Parameters<f64>, path: Option<&Path>) -> PyResult<rig::Rig<T, FlownPath<T>>> {
     let parameters = parameters.cast();
+    let lands = path.and_then(|path| path.spec.route()).is_some_and(RouteSpec::lands);
     let path = match path {
         Some(path) => path.spec.build().map_err(out_of_range)?,
         None => rig::path(&parameters).map_err(out_of_range)?,
     };
-    rig::Rig::on(path, &parameters).map_err(|error| match error {
+    let rig = rig::Rig::on(path, &parameters).map_err(|error| match error {
         SetupError::Range(error) => out_of_range(error),
         SetupError::Gains(_) => whole(error),
-    })
+    })?;
+    Ok(if lands { rig.landing_at_end() } else { rig })
 }
 
 fn request(name: &str) -> PyResult<Request> {
@@ -132,6 +134,30 @@ impl Rig {
                 frames: Frames::NedFrd,
             }
         }))
+    }
+
+    /// Flies the path at another factor of its speed, smoothly.
+    fn set_speed_factor(&mut self, factor: f64) -> PyResult<()> {
+        within("factor", factor, [-2.0, 2.0])?;
+        either!(&mut self.0, rig => rig.set_speed_factor(controller::Real::lit(factor)));
+        Ok(())
+    }
+
+    /// Goes on from the stop where the payload rests.
+    fn go_on(&mut self) -> bool {
+        either!(&mut self.0, rig => {
+            let is_following = rig.mode() == Mode::Follow;
+            rig.following_mut().is_some_and(|law| is_following && law.go_on())
+        })
+    }
+
+    /// Whether the payload has rested at the route's end for as long as it is to.
+    #[getter]
+    fn is_over(&self) -> bool {
+        either!(&self.0, rig => {
+            let rests = rig.mode() == Mode::Follow && rig.following().is_some_and(controller::Follow::is_over);
+            rests || rig.is_landing_at_end()
+        })
     }
 
     #[getter]

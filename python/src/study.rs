@@ -4,7 +4,7 @@ use hil_sim::describe::input::Invalid;
 use hil_sim::fly::flight::Control;
 use hil_sim::study::{campaign as drawn, compare as compared};
 use hil_sim::world::Seed;
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use crate::convert::{columns, object, table};
-use crate::error::{invalid, unknown, whole, within};
+use crate::error::{count, invalid, unknown, whole, within};
 use crate::flight::log;
 use crate::interrupt::interruptible;
 use crate::state::State;
@@ -28,12 +28,13 @@ fn pool(jobs: usize) -> PyResult<ThreadPool> {
 #[pyo3(signature = (runs = 20, *, cases = None, seed = 1, bandwidth = compared::BANDWIDTH, jobs = 0))]
 pub fn compare<'py>(
     py: Python<'py>,
-    runs: usize,
+    runs: i64,
     cases: Option<Vec<String>>,
     seed: u64,
     bandwidth: f64,
     jobs: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let runs = count("runs", runs)? as usize;
     within("bandwidth", bandwidth, [0.01, 100.0])?;
     let known: Vec<&str> = compared::CASES.iter().map(|case| case.name).collect();
     let cases = cases.unwrap_or_else(|| known.iter().copied().map(str::to_owned).collect());
@@ -54,8 +55,19 @@ pub fn compare<'py>(
 #[pyclass(frozen, module = "slung")]
 pub struct Campaign(pub drawn::Campaign);
 
-/// The campaign that comes with the simulator.
-const BUILT_IN: &str = include_str!("../../hil-sim/scenarios/campaign.toml");
+/// The campaign of this name or in this file.
+fn read(source: &Bound<'_, PyAny>) -> PyResult<String> {
+    let file: PathBuf = source.extract()?;
+    match std::fs::read_to_string(&file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            let name = file.display().to_string();
+            let known = || drawn::BUILTIN.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+            let absent = || format!("{name}: there is no such file, and the built-in campaigns are {}", known());
+            Ok(drawn::builtin(&name).ok_or_else(|| PyFileNotFoundError::new_err(absent()))?.to_owned())
+        }
+        read => read.map_err(|error| PyOSError::new_err(format!("{}: {error}", file.display()))),
+    }
+}
 
 #[pymethods]
 impl Campaign {
@@ -63,9 +75,9 @@ impl Campaign {
     #[pyo3(signature = (source = None, /))]
     fn new(source: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let text = match source {
-            None => BUILT_IN.to_owned(),
+            None => drawn::builtin("campaign").unwrap_or_default().to_owned(),
             Some(mapping) if mapping.cast::<PyMapping>().is_ok() => table(mapping)?.to_string(),
-            Some(file) => std::fs::read_to_string(file.extract::<PathBuf>()?)?,
+            Some(source) => read(source)?,
         };
         drawn::Campaign::parse(&text).map(Self).map_err(invalid)
     }
@@ -88,7 +100,8 @@ impl Campaign {
 
     /// Flies all, or the first `runs`: a row a flight.
     #[pyo3(signature = (runs = None, *, seed = 1, jobs = 0))]
-    fn run<'py>(&self, py: Python<'py>, runs: Option<u64>, seed: u64, jobs: usize) -> PyResult<Bound<'py, PyDict>> {
+    fn run<'py>(&self, py: Python<'py>, runs: Option<i64>, seed: u64, jobs: usize) -> PyResult<Bound<'py, PyDict>> {
+        let runs = runs.map(|runs| count("runs", runs)).transpose()?;
         let pool = pool(jobs)?;
         let campaign = &self.0;
         let rows: Result<Vec<Option<drawn::Row>>, Invalid> = interruptible(py, |control| {

@@ -156,3 +156,39 @@ def test_what_is_no_curve_is_refused():
         slung.Path(kind="helix", speed=1.0)
     report = slung.Path(kind="circle", radius=5.0, p3=-10.0, speed=1.0).check()
     assert "closed, smooth and regular" in report
+
+
+def test_a_route_pauses_goes_on_and_ends_on_the_ground():
+    points = [[0.0, 0.0, -4.0], [6.0, 0.0, -4.0], [6.0, 4.0, -4.0]]
+    route = slung.Path(kind="route", points=points, speed=1.5, corner_m=1.0, end="land", stops=[{"index": 1, "dwell_s": 1e5}])
+    scenario = slung.Scenario(
+        path=route, ground={}, initial={"position": points[0]}, controller={"law": "follow", "rate_hz": 500.0}, duration_s=200.0
+    )
+    world = slung.World(scenario)
+    rig = slung.Rig(slung.Parameters(CTL_PERIOD=0.002), route)
+    rig.take_over(world.state, thrust=29.43)
+    with pytest.raises(slung.Refused, match="factor = 3 is outside -2 to 2"):
+        rig.set_speed_factor(3.0)
+    assert not rig.go_on()
+
+    def fly(seconds):
+        for _ in range(round(seconds / 0.002)):
+            output = rig.step(world.read(), "follow", uav=world.uav)
+            world.advance(output.thrust, output.torque)
+        return output
+
+    while world.state.position[0] < 1.0:
+        fly(0.5)
+        assert world.time_s < 30.0
+    rig.set_speed_factor(0.0)
+    fly(8.0)
+    paused = world.state.position
+    fly(3.0)
+    assert np.abs(world.state.position - paused).max() < 1e-3 and 1.0 < paused[0] < 5.9
+    rig.set_speed_factor(1.0)
+    fly(25.0)
+    assert rig.go_on() and not rig.is_over
+    fly(60.0)
+    # At rest is 10 mm/s, and the stop's rate 0.5/s: landing begins within 2 cm of the end.
+    assert rig.is_over and world.on_ground == (True, True) and rig.mode == "off"
+    assert np.abs(world.state.position[:2] - points[2][:2]).max() < 0.5

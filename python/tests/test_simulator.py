@@ -139,6 +139,16 @@ def test_campaigns_are_the_same_on_any_number_of_threads():
         slung.Campaign({"scenario": {"path": {"kind": "helix", "speed": 1.0}}})
 
 
+def test_counts_and_names_of_campaigns_are_refused_with_what_they_may_be():
+    assert slung.Campaign("ground-to-ground").title != slung.Campaign().title
+    with pytest.raises(FileNotFoundError, match="nosuch.*ground-to-ground"):
+        slung.Campaign("nosuch")
+    for refuse in (lambda: slung.Campaign().run(-4), lambda: slung.compare(0)):
+        with pytest.raises(slung.Refused, match="runs = .* is outside 1 to") as refused:
+            refuse()
+        assert refused.value.field == "runs" and refused.value.range == (1.0, 1e8)
+
+
 def test_others_run_while_a_flight_does():
     """A thread that counts goes on counting: a flight holds no lock."""
     scenario = slung.Scenario("fig3a", duration_s=200.0)

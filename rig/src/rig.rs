@@ -19,6 +19,17 @@ pub struct Rig<T: Real, P = AnyPath<T>, A = Actuators<T>> {
     last: Output<T>,
     /// Of an inner rate loop about each body axis, with the latency to it, s.
     time_constants: Vector3<T>,
+    end: End,
+}
+
+/// What is done where a route ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Hover,
+    /// A landing, once the payload has rested there.
+    Land,
+    /// It has.
+    Landing,
 }
 
 /// Either law under its supervisor.
@@ -126,7 +137,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
             Law::Follow(supervised(follower, parameters, actuation)?)
         };
         let last = Output { command: Command::zero(), mode: Mode::Off, fault: None, warning: None, limited: false };
-        Ok(Self { law, last, time_constants: setpoint::time_constants(parameters) })
+        Ok(Self { law, last, time_constants: setpoint::time_constants(parameters), end: End::Hover })
     }
 
     #[cfg(feature = "tracking")]
@@ -180,11 +191,37 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
         }
     }
 
+    /// The same, but that [`Request::Follow`] lands the vehicle once its payload has rested at its
+    /// route's end, until something else is asked for.
+    #[must_use]
+    pub fn landing_at_end(self) -> Self {
+        Self { end: End::Land, ..self }
+    }
+
+    /// Whether it lands because its route is over.
+    #[must_use]
+    pub fn is_landing_at_end(&self) -> bool {
+        self.end == End::Landing
+    }
+
+    /// The request that `request` comes to.
+    #[cold]
+    fn at_end(&mut self, request: Request) -> Request {
+        let is_over = self.mode() == Mode::Follow && self.following().is_some_and(Follow::is_over);
+        self.end = match request {
+            Request::Follow if is_over => End::Landing,
+            Request::Follow | Request::Land => self.end,
+            _ => End::Land,
+        };
+        if self.end == End::Landing { Request::Land } else { request }
+    }
+
     /// One control step on what is measured now: a state if there is one, or all of [`Measured`].
     /// The tracking law's reference is at `phase`, rad, now.
     #[inline]
     pub fn step<'a>(&mut self, measured: impl Into<Measured<'a, T>>, request: Request, phase: T) -> &Output<T> {
         let measured = measured.into();
+        let request = if self.end == End::Hover { request } else { self.at_end(request) };
         #[cfg(feature = "tracking")]
         if let Law::Track(supervisor, [radius, p3, rate]) = &mut self.law {
             supervisor.law_mut().set_reference(&controller::Reference::circle(*radius, *p3, *rate, phase));

@@ -17,13 +17,11 @@ pub(crate) struct Underway {
     factor: f32,
     is_paused: bool,
     has_begun: bool,
-    /// Time of rest at the end, s.
-    ended_s: f32,
 }
 
 impl Default for Underway {
     fn default() -> Self {
-        Self { factor: 1.0, is_paused: false, has_begun: false, ended_s: 0.0 }
+        Self { factor: 1.0, is_paused: false, has_begun: false }
     }
 }
 
@@ -195,17 +193,10 @@ impl Autopilot {
     /// After each step: a mission that ends on the ground lands when it has rested at its end.
     pub(super) fn end_mission(&mut self, mode: Mode) {
         let Some(law) = self.rig.as_ref().and_then(rig::Rig::following) else { return };
-        let Flown::Route(route) = law.path() else { return };
+        let Flown::Route(_) = law.path() else { return };
+        let is_over = mode == Mode::Follow && law.is_over();
         self.underway.has_begun |= mode == Mode::Follow;
-        if mode != Mode::Follow || !route.is_last_run() {
-            self.underway.ended_s = 0.0;
-            return;
-        }
-        if law.rests() {
-            self.underway.ended_s += self.period_s();
-        }
-        let dwell = controller::Path::dwell(route).unwrap_or(f32::INFINITY);
-        if self.mission.lands() && self.underway.ended_s > dwell && self.request == Request::Follow {
+        if self.mission.lands() && is_over && self.request == Request::Follow {
             self.request(Request::Land);
         }
     }

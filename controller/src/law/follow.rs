@@ -305,6 +305,12 @@ impl<T: Real, P: Path<T>> Follow<T, P> {
         self.rested > T::zero()
     }
 
+    /// Whether it has rested for as long as it is to where nothing comes after.
+    pub fn is_over(&self) -> bool {
+        // Elsewhere it would have gone on.
+        self.path.dwell().is_some_and(|dwell| self.rested > dwell)
+    }
+
     /// The path alone.
     pub fn into_path(self) -> P {
         self.path

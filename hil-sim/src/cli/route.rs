@@ -9,6 +9,7 @@ use hil_sim::report;
 use hil_sim::study::check::{Limits, Report};
 use std::error::Error;
 use std::io::{self, Write};
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -40,10 +41,10 @@ pub struct RouteArguments {
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     terrain: Option<f64>,
     /// Speed where the file says none, m/s.
-    #[arg(long, value_name = "M/S")]
+    #[arg(long, value_name = "M/S", allow_hyphen_values = true, value_parser = speed)]
     speed: Option<f64>,
     /// How far from a waypoint its corner's blend begins, m.
-    #[arg(long, default_value_t = 2.0, value_name = "METRES")]
+    #[arg(long, default_value_t = 2.0, value_name = "METRES", allow_hyphen_values = true, value_parser = corner)]
     corner: f64,
     /// The last waypoint leads back to the first.
     #[arg(long)]
@@ -51,12 +52,25 @@ pub struct RouteArguments {
     /// Print the route's table as a Rust static of the controller's types.
     #[arg(long, conflicts_with = "c")]
     rust: bool,
-    /// Print the route's table for C.
+    /// Print the route's waypoints for C's slung_route_build.
     #[arg(long)]
     c: bool,
     /// Draw a map of legs, blends, stops and fences.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    within(text, 0.05..=100.0, "m/s")
+}
+
+fn corner(text: &str) -> Result<f64, String> {
+    within(text, 0.02..=1000.0, "m")
+}
+
+fn within(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    let inside = text.parse().ok().filter(|value| range.contains(value));
+    inside.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
 }
 
 fn home(text: &str) -> Result<Home, String> {
@@ -107,7 +121,7 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
     if *rust {
         write!(out, "{}", mission::rust(route.table(), &source))?;
     } else if *c {
-        write!(out, "{}", mission::c(route.table(), &source))?;
+        write!(out, "{}", mission::c(&route, &source))?;
     } else if common.out.is_none() {
         write!(out, "{written}")?;
     }
@@ -116,7 +130,9 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
         for note in &mission.notes {
             eprintln!("{note}");
         }
-        eprint!("{report}");
+        eprint!(
+            "asked of the paper's vehicle, 2.5 kg with 0.5 kg on 2 m; a [vehicle] in the file is yours\n{report}"
+        );
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -63,8 +63,21 @@ pub fn read<'de, T: DeserializeOwned>(at: &str, value: impl Deserializer<'de>) -
         let path = error.path().to_string();
         // The root shows as ".", a part that has no name as "?".
         let path = path.trim_end_matches('?').trim_end_matches('.');
-        Invalid::new(join(at, path), error.inner())
+        Invalid::new(join(at, path), in_words(&error.inner().to_string()))
     })
+}
+
+/// What a parser says, without the path that stands in front of it already, and without the names of
+/// this program's types.
+fn in_words(message: &str) -> String {
+    let said = message.split_once("\nin `").map_or(message, |(said, _)| said).trim_end();
+    let Some((said, wanted)) = said.rsplit_once(", expected ") else { return said.to_owned() };
+    let wanted = match wanted {
+        "f64" => "a number",
+        "u32" | "u64" | "usize" => "a whole number of at least 0",
+        wanted => wanted,
+    };
+    format!("{said}, expected {wanted}")
 }
 
 /// `value` if it lies in `range`, which a NaN does not.

@@ -187,7 +187,13 @@ pub const SECTIONS: &[Section] = &[
                 "(by the vehicle)",
                 "What the vehicle may be asked for, by `check` and `run`.",
             ),
-            key("fence", "", Other("table"), "(none)", "Where the path stays and the way to it, in calm, by `check` and `run`."),
+            key(
+                "fence",
+                "",
+                Other("table"),
+                "(none)",
+                "Where the path stays and the way to it, in calm, by `check` and `run`.",
+            ),
         ],
     },
     Section {

@@ -42,12 +42,6 @@ pub struct Pilot<T: Real, A = Actuators<T>> {
     /// It is above a rate loop.
     gives_rates: bool,
     has_telemetry: bool,
-    /// At the route's end it lands.
-    lands_at_end: bool,
-    /// Since when the payload rests there, s.
-    ended_s: Option<f64>,
-    /// Longer than it is to rest there.
-    lands: bool,
 }
 
 /// One answer of a pilot.
@@ -145,6 +139,8 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
         let actuation = of(Actuators::new(&parameters).map_err(|error| Invalid::new("controller", error))?);
         let rig =
             Rig::with_actuation(path, &parameters, actuation).map_err(|error| Invalid::new("controller", error))?;
+        let lands = spec.law.route().is_some_and(RouteSpec::lands);
+        let rig = if lands { rig.landing_at_end() } else { rig };
         let reference = match spec.law {
             Law::Follow { .. } => None,
             Law::Track { reference, .. } => Some(reference),
@@ -155,22 +151,7 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
             joins: spec.supervised,
             gives_rates: spec.rate_loop_s.is_some(),
             has_telemetry: true,
-            lands_at_end: spec.law.route().is_some_and(RouteSpec::lands),
-            ended_s: None,
-            lands: false,
         })
-    }
-
-    /// Whether the payload has rested at its route's end, as a mission's does, at `t_s`.
-    fn has_ended(&mut self, t_s: f64) -> bool {
-        let Some(law) = self.rig.following().filter(|_| self.rig.mode() == Mode::Follow) else { return false };
-        let FlownPath::Route(route) = law.path() else { return false };
-        if !(law.rests() && route.is_last_run()) {
-            self.ended_s = None;
-            return false;
-        }
-        let dwell = controller::Path::dwell(route).map_or(f64::INFINITY, T::to_f64);
-        t_s - *self.ended_s.get_or_insert(t_s) > dwell
     }
 
     /// The same where nobody logs its telemetry, which it then does not make.
@@ -242,13 +223,11 @@ impl<T: Real, A: Actuation<T>> Answers for Pilot<T, A> {
     }
 
     fn lands(&self) -> bool {
-        self.lands
+        self.rig.is_landing_at_end()
     }
 
     #[inline]
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
-        let decision = self.decide(read, request, t_s);
-        self.lands = self.lands || self.lands_at_end && self.has_ended(t_s);
-        Some(decision)
+        Some(self.decide(read, request, t_s))
     }
 }

@@ -67,20 +67,25 @@ pub fn filled(outcomes: &[&Outcome], reference: &Reference) -> Vec<&'static Colu
 #[must_use]
 pub fn table(outcomes: &[Outcome], reference: &Reference, width: Option<usize>) -> String {
     let outcomes: Vec<&Outcome> = outcomes.iter().collect();
-    let expected = |outcome: &Outcome| reference.runs.get(&outcome.scenario.name).copied().unwrap_or_default();
+    let expected = |outcome: &Outcome| reference.runs.get(&outcome.scenario.name);
     let names: Vec<String> = outcomes
         .iter()
         .map(|outcome| {
             let (name, end) = name_and_end(outcome);
-            format!("{name}\n{}", end.unwrap_or_else(|| "reference".to_owned()))
+            match end.or_else(|| expected(outcome).map(|_| "reference".to_owned())) {
+                Some(below) => format!("{name}\n{below}"),
+                None => name.to_owned(),
+            }
         })
         .collect();
     let law = outcomes.iter().map(|outcome| outcome.scenario.controller.law.name().to_owned()).collect();
     let mut columns = vec![("law", law)];
     columns.extend(filled(&outcomes, reference).into_iter().map(|column| {
         let text = |results: &Results| column.text(results).unwrap_or_default();
-        let cells =
-            outcomes.iter().map(|outcome| format!("{}\n{}", text(&outcome.flight.results), text(&expected(outcome))));
+        let cells = outcomes.iter().map(|outcome| match expected(outcome) {
+            Some(expected) => format!("{}\n{}", text(&outcome.flight.results), text(expected)),
+            None => text(&outcome.flight.results),
+        });
         (column.heading, cells.collect())
     }));
     let deviation = |outcome: &&Outcome| outcome.flight.deviation.map(|deviation| format!("{:.1e}", deviation.max()));

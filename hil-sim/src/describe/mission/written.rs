@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
-use controller::{Knot, Run, Table};
+use controller::{End, Knot, RoutePace, Run, Table, Waypoint};
 
 use super::{Home, Local, LocalEdge, LocalItem};
+use crate::describe::course::RouteSpec;
 
 /// What a mission's file does not say.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,39 +158,44 @@ pub fn rust(table: &impl Table<f64>, source: &str) -> String {
     text
 }
 
-/// The table in f32 for C.
+/// Its waypoints for C, with room for the table that `slung_route_build` makes of them.
 #[must_use]
-pub fn c(table: &impl Table<f64>, source: &str) -> String {
-    let mut text = String::new();
-    let (knots, runs) = (table.knots(), table.runs());
+pub fn c(route: &RouteSpec, source: &str) -> String {
     // A literal such as 1f is none in C, and {:?} writes 1.0.
-    let row = |numbers: &[f32]| joined(numbers.iter().map(|number| format!("{number:?}f")));
+    let number = |number: f64| match number {
+        number if number.is_nan() => "NAN".to_owned(),
+        number if number.is_infinite() => "INFINITY".to_owned(),
+        number => format!("{:?}f", number as f32),
+    };
+    let row = |numbers: &[f64]| joined(numbers.iter().map(|&given| number(given)));
+    let (waypoints, table) = (route.waypoints(), route.table());
+    let (count, knots, runs) = (waypoints.len(), table.knots().len() + waypoints.len(), table.runs().len());
+    let closed = u8::from(route.is_closed());
+    let mut text = format!("/* The route of {source}, in N, m. Once, before slung_create_on:\n\n");
     let _ = writeln!(
         text,
-        "/* The route of {source}, in N, m: of each knot the point, the step to the next, two normals,"
+        "       slung_route_build(&route, sizeof route, route_points, {count}, {closed}, &route_pace, route_knots, {knots}, route_runs, {runs}, &error);"
     );
-    let _ = writeln!(text, "   the speed either way in m/s, and the yaw in rad. */");
-    let _ = writeln!(text, "static const float route_knots[{}][15] = {{", knots.len());
-    for knot in knots {
-        let Knot { point, step, normals: [n1, n2], speed, yaw } = knot.cast::<f32>();
-        let numbers = [&point[..], &step, &n1, &n2, &speed, &[yaw]].concat();
-        let _ = writeln!(text, "    {{{}}},", row(&numbers));
+    if route.lands() {
+        text.push_str("       slung_route_land(&route, 1);\n");
     }
-    let _ = writeln!(
-        text,
-        "}};\n/* Of each run its first knot, its number of knots, whether it closes, and how long its end is"
-    );
-    let _ = writeln!(text, "   rested at in s, negative: until told. */");
-    let _ = writeln!(
-        text,
-        "static const struct {{ unsigned first, knots, closed; float dwell; }} route_runs[{}] = {{",
-        runs.len()
-    );
-    for run in runs {
-        let Run { first, knots, is_closed, dwell } = run.cast::<f32>();
-        let dwell = if dwell.is_finite() { dwell } else { -1.0 };
-        let _ = writeln!(text, "    {{{first}u, {knots}u, {}u, {}}},", u8::from(is_closed), row(&[dwell]));
+    match route.end() {
+        End::Back(times) => text.push_str(&format!("       slung_route_repeat(&route, {times}, 1);\n")),
+        End::Again(times) => text.push_str(&format!("       slung_route_repeat(&route, {times}, 0);\n")),
+        End::Stay => {}
     }
-    text.push_str("};\n");
+    text.push_str("*/\n#include \"slung.h\"\n\n#include <math.h>\n\n");
+    let _ = writeln!(text, "static const slung_waypoint route_points[{count}] = {{");
+    for &Waypoint { point, corner, speed, yaw, stop } in waypoints {
+        let rest = [corner.unwrap_or(0.0), speed, yaw.unwrap_or(f64::NAN), stop.unwrap_or(-1.0)];
+        let _ = writeln!(text, "    {{{{{}}}, {}}},", row(&point), row(&rest));
+    }
+    let RoutePace { stop_rate, rise, .. } = RoutePace::<f64>::default();
+    let _ = writeln!(
+        text,
+        "}};\nstatic const slung_pace route_pace = {{{}}};",
+        row(&[route.acceleration(), stop_rate, rise])
+    );
+    let _ = writeln!(text, "static slung_knot route_knots[{knots}];\nstatic slung_run route_runs[{runs}];");
     text
 }

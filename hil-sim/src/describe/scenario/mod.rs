@@ -315,7 +315,10 @@ impl Scenario {
     /// Whether it is to end on the ground.
     #[must_use]
     pub fn lands(&self) -> bool {
-        self.requests.last().is_some_and(|asked| asked.request == Some(Request::Land))
+        match self.requests.iter().rev().find_map(|asked| asked.request) {
+            None | Some(Request::Follow) => self.controller.law.route().is_some_and(RouteSpec::lands),
+            last => last == Some(Request::Land),
+        }
     }
 
     /// Control periods in the flight.
