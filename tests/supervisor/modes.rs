@@ -4,7 +4,7 @@ use controller::{Fault, Follow, Law, Margin, Measured, Mode, Path, Policy, Reque
 
 use crate::flight::{CIRCLE, Flight, PERIOD, supervisor};
 
-const DOCUMENTATION: &str = include_str!("../../controller/src/flight/supervisor.rs");
+const DOCUMENTATION: &str = include_str!("../../controller/src/flight/supervisor/mod.rs");
 
 /// The table: its columns' names, and the rows' cells with the mode's name first.
 fn table() -> Vec<Vec<String>> {

@@ -1,0 +1,185 @@
+//! What is measured: what of it is believed, and what is flown on where a part is missing.
+
+use model::{Channel, Command, Real, State, Uav};
+use nalgebra::Vector3;
+
+use super::Supervisor;
+use crate::flight::cable::Watching;
+use crate::flight::mode::{Fault, Lost, Measured, Mode, Output};
+use crate::flight::turning::{LED, mended};
+use crate::law::Law;
+use crate::sampled::actuator::Actuation;
+
+impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
+    /// The UAV's own navigation, unless the load's is to be believed rather. Where both have jumped
+    /// what they are measured from has moved.
+    ///
+    /// # Errors
+    /// The load is measured in flight where it can't hang from the UAV, or does not move as its
+    /// velocity says.
+    #[inline]
+    pub(super) fn believe<'a>(
+        &mut self,
+        state: &State<T>,
+        uav: Option<&'a Uav<T>>,
+    ) -> Result<Option<&'a Uav<T>>, Fault> {
+        let Some(uav) = uav else { return Ok(None) };
+        if matches!(self.mode, Mode::Off | Mode::Idle) {
+            return Ok(Some(uav));
+        }
+        match self.motion.is_off(state, uav) {
+            [false, true] if self.is_hung() => return Ok(None),
+            [true, false] => return Err(Fault::Contradiction),
+            _ => {}
+        }
+        let line = state.position - uav.position;
+        if self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod) {
+            // Nor was the last state one to carry on.
+            self.blind = self.blind.max(self.policy.coast);
+            return Err(Fault::Contradiction);
+        }
+        Ok(Some(uav))
+    }
+
+    /// Whether load and UAV are a cable's length apart, in flight.
+    fn is_hung(&self) -> bool {
+        let is_flying = matches!(self.mode, Mode::Join | Mode::Follow | Mode::Hold | Mode::Land);
+        is_flying && !self.cable.is_slack() && !self.landing.is_set_down()
+    }
+
+    /// Whether the model can say what has become of the last state: not for long, and only with a
+    /// cable that pulls.
+    fn may_carry(&self) -> bool {
+        self.is_hung() && self.blind <= self.policy.coast
+    }
+
+    /// A step on what the model makes of the last state. Its `fault` is this step's alone: states
+    /// may come at a lower rate than commands.
+    #[cold]
+    pub(super) fn carried(
+        &mut self,
+        fault: Fault,
+        uav: Option<&Uav<T>>,
+        specific: Option<Vector3<T>>,
+    ) -> Option<Output<T>> {
+        let state = self.may_carry().then(|| self.sampler.carry()).filter(|state| state.check().is_ok())?;
+        let velocity = self.now(&state, uav).velocity;
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
+        self.change_mode(Some(&state), uav);
+        let output = self.fly(&state, uav);
+        Some(Output { fault: output.fault.or(Some(fault)), ..output })
+    }
+
+    /// A step on a state of which attitude or body rate is missing, from the other of them. It is
+    /// good enough for hold.
+    #[cold]
+    pub(super) fn mended(
+        &mut self,
+        state: &State<T>,
+        channel: Channel,
+        measured: &Measured<'_, T>,
+    ) -> Option<Output<T>> {
+        let (fault, period) = (Fault::State(channel), self.sampler.period());
+        self.unturned += period;
+        let may_lead = channel == Channel::BodyRate || self.unturned <= T::lit(LED);
+        if matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault) || self.blind > T::zero() || !may_lead {
+            return None;
+        }
+        let state = mended(state, channel, &self.sampler.carry(), period)?;
+        let uav = measured.uav.map(|uav| Uav { attitude: state.attitude, body_rate: state.body_rate, ..*uav });
+        let uav = self.believe(&state, uav.as_ref().filter(|uav| uav.check().is_ok())).ok()?;
+        if self.unturned > self.policy.coast && matches!(self.mode, Mode::Join | Mode::Follow) {
+            self.enter_hold(&self.now(&state, uav), Some(fault));
+        }
+        self.calm = T::zero();
+        let output = self.with_load(&state, uav, measured.specific_force);
+        Some(Output { fault: output.fault.or(Some(fault)), ..output })
+    }
+
+    /// A step on a good state.
+    #[inline]
+    pub(super) fn with_load(
+        &mut self,
+        state: &State<T>,
+        uav: Option<&Uav<T>>,
+        specific: Option<Vector3<T>>,
+    ) -> Output<T> {
+        let length = self.sampler.vehicle().params().rod_length;
+        let velocity = match uav {
+            Some(uav) => uav.velocity,
+            None => state.velocity - state.rod_rate * length,
+        };
+        if self.blind > T::zero() {
+            if !self.may_carry() {
+                self.sampler.resume(state);
+                self.cable.resume(&velocity);
+            }
+            self.blind = T::zero();
+        }
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
+        if let Some(uav) = uav {
+            let line = state.position - uav.position;
+            self.cable.watch(self.sampler.vehicle(), Some(line), self.watching());
+        }
+        self.change_mode(Some(state), uav);
+        match self.mode {
+            // In fault with a good state: the rotors were cut.
+            Mode::Off | Mode::Fault => self.ground(Some(state), T::zero()),
+            Mode::Idle => self.ground(Some(state), self.sampler.actuation().least_thrust()),
+            _ => self.fly(state, uav),
+        }
+    }
+
+    /// A step on the UAV alone.
+    #[cold]
+    pub(super) fn without_load(&mut self, uav: &Uav<T>, specific: Option<Vector3<T>>) -> Output<T> {
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &uav.velocity, &uav.attitude, thrust, specific);
+        self.cable.watch(self.sampler.vehicle(), None, self.watching());
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
+            self.enter_hold(uav, None);
+        }
+        self.change_mode(None, Some(uav));
+        match self.mode {
+            Mode::Off | Mode::Fault => self.ground(None, T::zero()),
+            Mode::Idle => self.ground(None, self.sampler.actuation().least_thrust()),
+            _ => self.hold(None, uav, None),
+        }
+    }
+
+    /// How the cable is looked at in the mode that there is.
+    pub(super) fn watching(&self) -> Watching {
+        match self.mode {
+            Mode::Off | Mode::Idle | Mode::TakeOff => Watching::Not,
+            Mode::Land => Watching::Against,
+            _ => Watching::Learning,
+        }
+    }
+
+    /// A step without a good state.
+    #[cold]
+    pub(super) fn without_state(&mut self) -> Output<T> {
+        let command = match self.mode {
+            Mode::Off => Command::zero(),
+            Mode::Idle => Command::of_thrust(self.sampler.actuation().least_thrust()),
+            Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold | Mode::Land
+                if self.blind <= self.policy.coast =>
+            {
+                self.sampler.coast()
+            }
+            _ => {
+                self.mode = Mode::Fault;
+                match self.policy.lost {
+                    Lost::Cut => Command::zero(),
+                    Lost::Sink(share) => {
+                        let hover = self.sampler.vehicle().hover_thrust();
+                        self.sampler.send(&Command::of_thrust(hover * share))
+                    }
+                }
+            }
+        };
+        self.output(command, None)
+    }
+}
