@@ -42,7 +42,8 @@ pub struct Cycles {
 pub fn measure(machine: &str, image: &Image, cases: &[(String, Measured)]) -> Result<BTreeMap<String, Cycles>> {
     let code = Code::read(image)?;
     // Where the probe goes on after the step, by whichever of the compilers' two ways to name it.
-    let ends: Vec<u32> = image.calls.named("bench::probe::Probe").filter_map(|probe| code.find(CALL, probe)).collect();
+    let ends: Vec<u32> =
+        image.calls.named("bench::probe::Probe").filter_map(|probe| code.find(CALL, probe)).collect();
     let ends: Vec<u32> = ends.into_iter().map(|call| call + 2).collect();
     ensure!(!ends.is_empty(), "the bench has no probe");
     let entries: Vec<u32> = cases.iter().map(|(_, measured)| measured.entry).collect();
