@@ -453,6 +453,36 @@ fn a_jump_of_position_does_not_move_the_hold() {
     }
 }
 
+/// Positions and velocities of 8 cm and 12 cm/s of noise contradict nothing, and are no jumps.
+#[test]
+fn noise_does_not_move_the_hold() {
+    let mut flight = hanging(PAPER, 10.0);
+    let place = flight.world.uav.position;
+    let mut seed = 1_u32;
+    let mut moved = 0.0_f64;
+    for _ in 0..10_000 {
+        let (mut uav, mut state) = (flight.uav(), flight.state());
+        let mut uniform = || {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 23) as f32 - 1.0
+        };
+        let mut noise = |deviation: f32| Vector3::from_fn(|_, _| deviation * 3.0_f32.sqrt() * uniform());
+        for (position, velocity) in
+            [(&mut uav.position, &mut uav.velocity), (&mut state.position, &mut state.velocity)]
+        {
+            *position += noise(0.08);
+            *velocity += noise(0.12);
+        }
+        let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: None };
+        let output = flight.supervisor.step(measured, Request::Hold);
+        flight.world.advance(&output.command);
+        assert_eq!((output.mode, output.fault), (Mode::Hold, None));
+        moved = moved.max(norm(&(flight.world.uav.position - place)));
+    }
+    println!("{moved:.3} m");
+    assert!(moved < 0.3, "{moved} m");
+}
+
 /// Beside its load on a slack cable, a vehicle without navigation of its own does not know where it
 /// is: it stays on the ground and says what is wrong; with navigation it takes off.
 #[test]

@@ -3,8 +3,10 @@
 use model::{Real, State, Uav, is_within};
 use nalgebra::Vector3;
 
-/// A position further from where the velocities lead than this, m, contradicts them.
+/// A position further from where the velocities lead than this, m, for as long as this, s,
+/// contradicts them.
 const OFF: f64 = 0.3;
+const LONG: f64 = 0.1;
 /// Time, s, over which a difference is forgotten: a velocity may be wrong by `OFF` in this time,
 /// 0.6 m/s, for ever, and a position that has jumped is believed once this has been forgotten.
 const FORGOTTEN: f64 = 0.5;
@@ -15,15 +17,15 @@ pub(crate) struct Motion<T> {
     period: T,
     /// Time since both were measured, s.
     unseen: T,
-    /// Where the velocities have led load and UAV, m.
-    load: Vector3<T>,
-    uav: Vector3<T>,
+    load: Led<T>,
+    uav: Led<T>,
 }
 
 impl<T: Real> Motion<T> {
     /// Nothing has been measured yet.
     pub(crate) fn new(period: T) -> Self {
-        Self { period, unseen: T::lit(FORGOTTEN), load: Vector3::zeros(), uav: Vector3::zeros() }
+        let led = Led { place: Vector3::zeros(), off: T::zero() };
+        Self { period, unseen: T::lit(FORGOTTEN), load: led, uav: led }
     }
 
     /// What is measured next is where both are.
@@ -42,21 +44,33 @@ impl<T: Real> Motion<T> {
     pub(crate) fn is_off(&mut self, state: &State<T>, uav: &Uav<T>) -> [bool; 2] {
         let passed = self.unseen;
         self.unseen = T::zero();
-        let is_known = passed < T::lit(FORGOTTEN);
-        let share = passed * T::lit(1.0 / FORGOTTEN);
-        let is_off = |led: &mut Vector3<T>, position: &Vector3<T>, velocity: &Vector3<T>| {
-            if !is_known {
-                *led = *position;
-                return false;
-            }
-            *led += velocity * passed;
-            let off = position - *led;
-            *led += off * share;
-            !is_within(&off, T::lit(OFF * OFF))
-        };
+        if passed >= T::lit(FORGOTTEN) {
+            self.load = Led { place: state.position, off: T::zero() };
+            self.uav = Led { place: uav.position, off: T::zero() };
+            return [false; 2];
+        }
         [
-            is_off(&mut self.load, &state.position, &state.velocity),
-            is_off(&mut self.uav, &uav.position, &uav.velocity),
+            self.load.is_off(&state.position, &state.velocity, passed),
+            self.uav.is_off(&uav.position, &uav.velocity, passed),
         ]
+    }
+}
+
+/// Where a velocity has led, m, and for how long the position has been off it, s.
+#[derive(Clone, Copy, Debug)]
+struct Led<T> {
+    place: Vector3<T>,
+    off: T,
+}
+
+impl<T: Real> Led<T> {
+    /// The same a time `passed` (s) later, with what is measured then.
+    #[inline(never)]
+    fn is_off(&mut self, position: &Vector3<T>, velocity: &Vector3<T>, passed: T) -> bool {
+        self.place += velocity * passed;
+        let off = position - self.place;
+        self.place += off * (passed * T::lit(1.0 / FORGOTTEN));
+        self.off = if is_within(&off, T::lit(OFF * OFF)) { T::zero() } else { self.off + passed };
+        self.off > T::lit(LONG)
     }
 }

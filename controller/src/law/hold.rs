@@ -43,7 +43,7 @@ const LEAN: f64 = 0.3;
 const REACH: f64 = 2.0;
 /// A position that is further from the last than this, m, and than it could have flown in this
 /// time, s, has jumped.
-const JUMP: f64 = 0.3;
+const JUMP: f64 = 1.0;
 const JUMP_TIME: f64 = 0.2;
 /// Faster than this, m/s, the integral waits, since what is going on is no steady error; and it
 /// stays below this, m/s².

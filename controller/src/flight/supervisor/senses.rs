@@ -27,13 +27,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         if matches!(self.mode, Mode::Off | Mode::Idle) {
             return Ok(Some(uav));
         }
-        match self.motion.is_off(state, uav) {
-            [false, true] if self.is_hung() => return Ok(None),
-            [true, false] => return Err(Fault::Contradiction),
-            _ => {}
+        let [load_is_off, uav_is_off] = self.motion.is_off(state, uav);
+        if uav_is_off && !load_is_off && self.is_hung() {
+            return Ok(None);
         }
         let line = state.position - uav.position;
-        if self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod) {
+        if load_is_off && !uav_is_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod) {
             // Nor was the last state one to carry on.
             self.blind = self.blind.max(self.policy.coast);
             return Err(Fault::Contradiction);
