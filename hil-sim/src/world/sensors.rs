@@ -133,6 +133,14 @@ pub struct Sensors {
     pub mocap: Option<mocap::Mocap>,
 }
 
+/// What a channel reads instead of what is there.
+#[derive(Clone, Copy)]
+enum Fault {
+    Nan,
+    Silent,
+    Frozen,
+}
+
 impl Channel {
     fn check(&self, at: &str, period: f64) -> Result<(), Invalid> {
         check(at, "noise", self.noise, 0.0, 100.0)?;
@@ -167,18 +175,27 @@ impl Channel {
         (self.jitter_s > 0.0).then(|| stream.uniform(0.0, self.jitter_s / period))
     }
 
-    /// What the channel's faults make of a reading.
+    /// What of its faults the channel has at `t_s`.
     #[inline]
-    fn fail(&self, t_s: f64, reading: Vector3<f64>, last: &Vector3<f64>) -> Vector3<f64> {
+    fn fault(&self, t_s: f64) -> Option<Fault> {
         let now = |window: &Option<Window>| window.is_some_and(|window| window.contains(t_s));
         if now(&self.nan) {
-            Vector3::repeat(f64::NAN)
+            Some(Fault::Nan)
         } else if now(&self.drop_out) {
-            Vector3::zeros()
-        } else if now(&self.freeze) {
-            *last
+            Some(Fault::Silent)
         } else {
-            reading
+            now(&self.freeze).then_some(Fault::Frozen)
+        }
+    }
+
+    /// What is read of `value` with a `fault`, where `last` was read.
+    #[inline]
+    fn reading(&self, fault: Option<Fault>, value: Vector3<f64>, last: &Vector3<f64>) -> Vector3<f64> {
+        match fault {
+            None => self.round(value),
+            Some(Fault::Nan) => Vector3::repeat(f64::NAN),
+            Some(Fault::Silent) => Vector3::zeros(),
+            Some(Fault::Frozen) => *last,
         }
     }
 }
@@ -280,7 +297,7 @@ impl SensorModel {
             let aged = sample.aged(channel, &state.rod, &before.rod);
             let turned = aged + channel.error(sample.stream).cross(&aged);
             let unit = turned / turned.dot(&turned).sqrt();
-            channel.fail(t_s, channel.round(unit), &last.rod)
+            channel.reading(channel.fault(t_s), unit, &last.rod)
         };
         let attitude = {
             let channel = &sensors.attitude;
@@ -289,8 +306,8 @@ impl SensorModel {
                 None => state.attitude,
             };
             let turned = orthonormal(&(aged * turn(&channel.error(sample.stream))));
-            let column =
-                |i| channel.fail(t_s, channel.round(turned.column(i).into()), &last.attitude.column(i).into());
+            let fault = channel.fault(t_s);
+            let column = |i| channel.reading(fault, turned.column(i).into(), &last.attitude.column(i).into());
             Matrix3::from_columns(&[column(0), column(1), column(2)])
         };
         let position = sample.vector(&sensors.position, &state.position, &before.position, &last.position);
@@ -350,7 +367,7 @@ impl Sample<'_> {
         last: &Vector3<f64>,
     ) -> Vector3<f64> {
         let value = self.aged(channel, now, before) + channel.error(self.stream);
-        channel.fail(self.t_s, channel.round(value), last)
+        channel.reading(channel.fault(self.t_s), value, last)
     }
 }
 
