@@ -81,9 +81,10 @@ fn any_bits_leave_the_payload_filter_sound() {
         }
         let thrust = if random.bits().is_multiple_of(3) { random.float() } else { HOVER };
         let any = random.vector();
-        let measurement = match random.bits() % 3 {
+        let measurement = match random.bits() % 4 {
             0 => LoadMeasurement::Direction(any, random.float()),
             1 => LoadMeasurement::Position(any, random.float()),
+            2 => LoadMeasurement::Pair([any, random.vector()], random.float()),
             _ => LoadMeasurement::Velocity(any, random.float()),
         };
         if random.bits().is_multiple_of(50) {

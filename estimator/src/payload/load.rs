@@ -1,8 +1,8 @@
 //! Measurements of the load itself, where there are some: they make the filter better, and it never
 //! needs them.
 //!
-//! A camera gives the direction of the cable, motion capture or a receiver on the load its place,
-//! either may give its velocity. Each is brought to the rod's horizontal components, compared with
+//! A camera gives the direction of the cable, motion capture the places of both bodies, a receiver
+//! on the load its place, and either may give its velocity. Each is brought to the rod's horizontal components, compared with
 //! the nominal rod at the time of the sample, τ ago,
 //!
 //! ```text
@@ -28,6 +28,10 @@ pub enum LoadMeasurement<T> {
     /// Where the load is, m, in the frame of the navigation's position, with its standard deviation
     /// per axis, m.
     Position(Vector3<T>, T),
+    /// Where load and UAV (its centre of mass) are, m, seen at one instant, as motion capture does,
+    /// with the standard deviation per axis of each, m. What navigation makes of the UAV's place
+    /// has the accelerometer's noise in common with the rod; what is seen has not.
+    Pair([Vector3<T>; 2], T),
     /// How it moves, m/s, with its standard deviation per axis, m/s.
     Velocity(Vector3<T>, T),
 }

@@ -213,6 +213,8 @@ impl<T: Real> Payload<T> {
             LoadMeasurement::Direction(value, deviation)
             | LoadMeasurement::Position(value, deviation)
             | LoadMeasurement::Velocity(value, deviation) => (value, *deviation),
+            LoadMeasurement::Pair([load, uav], deviation) if uav.dot(uav).is_finite() => (load, *deviation),
+            LoadMeasurement::Pair(..) => return false,
         };
         let is_usable = value.dot(value).is_finite()
             && deviation > T::zero()
@@ -230,6 +232,9 @@ impl<T: Real> Payload<T> {
         let now = Swing { rod, rate: rod_rate, acceleration: self.pull.acceleration };
         let lever = self.last.attitude * self.last.body_rate.cross(&self.params.hook);
         let hook_velocity = self.last.velocity + lever;
+        // Where the hook was then, of a UAV that was there.
+        let hook_of = |uav: Vector3<T>| uav + self.last.attitude * self.params.hook - lever * age;
+        let load_velocity = hook_velocity + rod_rate * self.params.cable_length;
         let [rods, rates] = &mut self.fresh;
         match measurement {
             LoadMeasurement::Direction(rod, _) => {
@@ -240,12 +245,15 @@ impl<T: Real> Payload<T> {
                 rods.add_rod([rod.x / length, rod.y / length], deviation, ages, &now);
             }
             LoadMeasurement::Position(place, _) => {
-                // Where the hook was then.
-                let hook = self.last.position + self.last.attitude * self.params.hook - hook_velocity * age;
-                let rod = (place - hook) * per_length;
-                let motion = [*place, hook_velocity + rod_rate * self.params.cable_length];
-                self.track.take(place, [deviation, age, self.params.noise.accelerometer], &motion);
+                let rod = (place - hook_of(self.last.position - self.last.velocity * age)) * per_length;
+                self.track.take(place, [deviation, age, self.params.noise.accelerometer], &[*place, load_velocity]);
                 rods.add_rod([rod.x, rod.y], deviation * per_length, ages, &now);
+            }
+            LoadMeasurement::Pair([place, uav], _) => {
+                let rod = (place - hook_of(*uav)) * per_length;
+                self.track.take(place, [deviation, age, self.params.noise.accelerometer], &[*place, load_velocity]);
+                let both = deviation * T::lit(core::f64::consts::SQRT_2);
+                rods.add_rod([rod.x, rod.y], both * per_length, ages, &now);
             }
             LoadMeasurement::Velocity(velocity, _) => {
                 let rate = (velocity - hook_velocity) * per_length;

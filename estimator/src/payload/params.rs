@@ -77,7 +77,7 @@ impl<T: Real> Default for PayloadNoise<T> {
     fn default() -> Self {
         Self {
             accelerometer: T::lit(0.015),
-            rod: T::lit(0.005),
+            rod: T::lit(0.002),
             lateral: T::lit(0.05),
             axial: T::lit(0.3),
             wind: T::lit(4.0),

@@ -196,7 +196,8 @@ impl Sight {
         let attitude = pose.attitude.map(|x| x as f32);
         let _ = self.navigation.pose(&fix, Some((&attitude, turn)));
         if let Some(load) = &pose.load {
-            self.payload.observe(&LoadMeasurement::Position(single(load), deviation), pose.age as f32);
+            let pair = LoadMeasurement::Pair([single(load), single(&pose.position)], deviation);
+            self.payload.observe(&pair, pose.age as f32);
         }
     }
 
