@@ -2,8 +2,8 @@
 //! needs them.
 //!
 //! A camera gives the direction of the cable, motion capture the places of both bodies, a receiver
-//! on the load its place, and either may give its velocity. Each is brought to the rod's horizontal components, compared with
-//! the nominal rod at the time of the sample, τ ago,
+//! on the load its place, and either may give its velocity. Each is brought to the rod's horizontal
+//! components, compared with the nominal rod at the time of the sample, τ ago,
 //!
 //! ```text
 //! direction, position: ν = z_q − (q − τ q̇ + ½ τ² q̈)_h,    h·δx = η − τ ζ                       (8)
