@@ -65,4 +65,11 @@ fn its_costs_are_the_expected_ones() {
         format!("| whole step, circle, while joining it from afar | {} at most |", count("joining", "worst"));
     let tracking = format!("| tracking, without the supervisor | {} | {}", count("track", "worst"), rest("track"));
     assert!(README.contains(&joining) && README.contains(&tracking), "{joining}, {tracking}");
+    let laying = format!(
+        "| on the ground: laying a route of eight waypoints, with corners and a stop | {} to {} | | | {} B |",
+        count("laying", "best"),
+        count("laying", "worst"),
+        grouped(&expected["code_bytes_by_case"]["laying"])
+    );
+    assert!(README.contains(&laying), "{laying}");
 }

@@ -206,6 +206,7 @@ impl<T: Real, P: Path<T>, A: Actuation<T>> Rig<T, P, A> {
 
     /// The request that `request` comes to.
     #[cold]
+    #[inline(never)]
     fn at_end(&mut self, request: Request) -> Request {
         let is_over = self.mode() == Mode::Follow && self.following().is_some_and(Follow::is_over);
         self.end = match request {

@@ -59,6 +59,9 @@ pub struct Report {
     pub ram_bytes_by_case: BTreeMap<String, u64>,
     /// Bound on the stack of a step, the deepest case, bytes.
     pub stack_bytes: u32,
+    /// Likewise on laying a route, bytes.
+    #[serde(default)]
+    pub laying_stack_bytes: u32,
     /// All cores' commands equal the host's, bit for bit.
     pub bit_identical: bool,
     /// No panic is reachable.
@@ -105,6 +108,8 @@ impl Report {
             compare(&format!("{name}, bytes of state"), bytes, expected.ram_bytes_by_case.get(name).copied());
         }
         compare("stack, bytes", self.stack_bytes.into(), Some(expected.stack_bytes.into()));
+        let laying = [self, expected].map(|report| u64::from(report.laying_stack_bytes));
+        compare("stack of laying a route, bytes", laying[0], Some(laying[1]));
         let missing: Vec<&str> = expected
             .instructions
             .keys()

@@ -7,6 +7,7 @@ mod digest;
 mod filters;
 mod flown;
 mod laws;
+mod laying;
 mod paths;
 mod random;
 
@@ -14,6 +15,7 @@ use alone::Alone;
 use filters::{LoadAndNavigation, LoadBehindNavigation};
 use flown::Flown;
 use laws::{Following, Tracking};
+use laying::Laying;
 
 pub use digest::Digest;
 pub use random::Random;
@@ -22,12 +24,16 @@ pub use random::Random;
 pub const STATES: usize = 1024;
 /// The first of them, for who can't wait for all.
 pub const FEW: usize = 32;
+/// Those of what is done on the ground, and takes as long as thousands of steps.
+const RARE: usize = 16;
 /// Steps on each state: the first as after engaging, the second with a last command to predict
 /// from.
 pub const STEPS: usize = 2;
 
 /// A law on a path or reference, and the states it is tried on.
 pub trait Case {
+    /// A control step; else it is done on the ground.
+    const IS_STEP: bool = true;
     /// What a step reads.
     type State;
     /// What a step returns.
@@ -62,6 +68,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("flown", Flown::new());
     visitor.visit("load-filter", LoadBehindNavigation::new());
     visitor.visit("load-filter-and-navigation", LoadAndNavigation::new());
+    visitor.visit("laying", Some(Laying::new()));
 }
 
 /// Runs `case` on so many random states through `step`, [`STEPS`] each. Returns the digest of all
@@ -73,7 +80,7 @@ pub fn exercise<C: Case>(
 ) -> Digest {
     let mut random = Random::new(20);
     let mut digest = Digest::default();
-    for _ in 0..states {
+    for _ in 0..if C::IS_STEP { states } else { states.min(RARE) } {
         let state = case.prepare(&mut random);
         for _ in 0..STEPS {
             let output = step(case, &state);
