@@ -187,6 +187,7 @@ mod tests {
             ram_bytes: 100,
             ram_bytes_by_case: BTreeMap::from([("circle".to_owned(), 100)]),
             stack_bytes: 500,
+            laying_stack_bytes: 0,
             bit_identical: true,
             panic_free: true,
             no_soft_double: true,
