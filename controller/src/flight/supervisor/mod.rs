@@ -85,12 +85,10 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     fault: Option<Fault>,
     /// The last command was the law's.
     is_by_law: bool,
-    /// Time without a good state, without attitude or body rate, and of calm in hold, s.
+    /// Time without a good state, and of calm in hold, s.
     blind: T,
-    unturned: T,
     calm: T,
     envelope: Envelope<T>,
-    motion: Motion<T>,
     cable: Cable<T>,
     payload: Payload<T>,
     landing: Landing<T>,
@@ -104,6 +102,9 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     trim: Vector3<T>,
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
+    motion: Motion<T>,
+    /// For how long the attitude has been led by body rates alone, s.
+    led: T,
 }
 
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
@@ -140,7 +141,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             trim: Vector3::zeros(),
             from: T::zero(),
             blind: T::zero(),
-            unturned: T::zero(),
+            led: T::zero(),
             calm: T::zero(),
         })
     }
@@ -258,23 +259,18 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let fault = match measured.state {
             None => Fault::NoState,
             Some(state) => match state.check() {
+                Err(channel) => Fault::State(channel),
                 Ok(()) => match self.believe(state, uav) {
-                    Ok(uav) => {
-                        self.unturned = T::zero();
-                        return self.with_load(state, uav, measured.specific_force);
-                    }
+                    Ok(uav) => return self.with_load(state, uav, measured.specific_force),
                     Err(fault) => fault,
                 },
-                Err(channel) => {
-                    if let Some(output) = self.mended(state, channel, &measured) {
-                        return output;
-                    }
-                    Fault::State(channel)
-                }
             },
         };
         self.blind += self.sampler.period();
         if let Some(output) = self.carried(fault, uav, measured.specific_force) {
+            return output;
+        }
+        if let Some(output) = self.mended(fault, &measured) {
             return output;
         }
         if self.fault != Some(Fault::Caught) {

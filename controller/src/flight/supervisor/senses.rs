@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::Supervisor;
 use crate::flight::cable::Watching;
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output};
-use crate::flight::turning::{LED, mended};
+use crate::flight::turning::{LED, mend};
 use crate::law::Law;
 use crate::sampled::actuator::Actuation;
 
@@ -24,20 +24,28 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         uav: Option<&'a Uav<T>>,
     ) -> Result<Option<&'a Uav<T>>, Fault> {
         let Some(uav) = uav else { return Ok(None) };
+        let [load_is_off, uav_is_off] = self.is_off(state, uav);
+        if load_is_off { Err(Fault::Contradiction) } else { Ok(Some(uav).filter(|_| !uav_is_off)) }
+    }
+
+    /// Whether load and UAV are measured where they can't be.
+    #[inline(never)]
+    fn is_off(&mut self, state: &State<T>, uav: &Uav<T>) -> [bool; 2] {
         if matches!(self.mode, Mode::Off | Mode::Idle) {
-            return Ok(Some(uav));
+            return [false; 2];
         }
         let [load_is_off, uav_is_off] = self.motion.is_off(state, uav);
         if uav_is_off && !load_is_off && self.is_hung() {
-            return Ok(None);
+            return [false, true];
         }
         let line = state.position - uav.position;
-        if load_is_off && !uav_is_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod) {
+        let is_off =
+            load_is_off && !uav_is_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod);
+        if is_off {
             // Nor was the last state one to carry on.
             self.blind = self.blind.max(self.policy.coast);
-            return Err(Fault::Contradiction);
         }
-        Ok(Some(uav))
+        [is_off, false]
     }
 
     /// Whether load and UAV are a cable's length apart, in flight.
@@ -55,6 +63,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// A step on what the model makes of the last state. Its `fault` is this step's alone: states
     /// may come at a lower rate than commands.
     #[cold]
+    #[inline(never)]
     pub(super) fn carried(
         &mut self,
         fault: Fault,
@@ -70,30 +79,49 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         Some(Output { fault: output.fault.or(Some(fault)), ..output })
     }
 
-    /// A step on a state of which attitude or body rate is missing, from the other of them. It is
-    /// good enough for hold.
+    /// A step on a state of which attitude or body rate is missing for longer, from the other of
+    /// them and the last step's. It is good enough for hold.
     #[cold]
-    pub(super) fn mended(
-        &mut self,
-        state: &State<T>,
-        channel: Channel,
-        measured: &Measured<'_, T>,
-    ) -> Option<Output<T>> {
-        let (fault, period) = (Fault::State(channel), self.sampler.period());
-        self.unturned += period;
-        let may_lead = channel == Channel::BodyRate || self.unturned <= T::lit(LED);
-        if matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault) || self.blind > T::zero() || !may_lead {
+    #[inline(never)]
+    pub(super) fn mended(&mut self, fault: Fault, measured: &Measured<'_, T>) -> Option<Output<T>> {
+        let (Fault::State(channel), mut state) = (fault, *measured.state?) else { return None };
+        if !self.mend(&mut state, channel) {
             return None;
         }
-        let state = mended(state, channel, &self.sampler.carry(), period)?;
         let uav = measured.uav.map(|uav| Uav { attitude: state.attitude, body_rate: state.body_rate, ..*uav });
         let uav = self.believe(&state, uav.as_ref().filter(|uav| uav.check().is_ok())).ok()?;
-        if self.unturned > self.policy.coast && matches!(self.mode, Mode::Join | Mode::Follow) {
+        if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.enter_hold(&self.now(&state, uav), Some(fault));
         }
+        self.blind = self.blind.min(self.policy.coast);
         self.calm = T::zero();
-        let output = self.with_load(&state, uav, measured.specific_force);
+        let now = self.now(&state, uav);
+        let thrust = self.sampler.applied().thrust;
+        self.cable.sample(self.sampler.vehicle(), &now.velocity, &now.attitude, thrust, measured.specific_force);
+        self.change_mode(Some(&state), uav);
+        let known = self.sampler.freeze(&state);
+        self.sampler.sample(&state);
+        self.sampler.keep(known);
+        let output = self.hold(Some(&state), &now, None);
         Some(Output { fault: output.fault.or(Some(fault)), ..output })
+    }
+
+    /// Gives a `state` in flight the attitude or body rate that is missing, and says whether it is
+    /// whole then.
+    #[inline(never)]
+    fn mend(&mut self, state: &mut State<T>, missing: Channel) -> bool {
+        let period = self.sampler.period();
+        if missing == Channel::Attitude {
+            self.led += period;
+        }
+        let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault);
+        // The last step was good, carried or mended itself.
+        let is_known = self.blind <= self.policy.coast + period * T::lit(1.5);
+        if !(is_flying && is_known && self.led <= T::lit(LED)) {
+            return false;
+        }
+        mend(state, missing, &self.sampler.carry(), period);
+        state.check().is_ok()
     }
 
     /// A step on a good state.
@@ -114,7 +142,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 self.sampler.resume(state);
                 self.cable.resume(&velocity);
             }
-            self.blind = T::zero();
+            (self.blind, self.led) = (T::zero(), T::zero());
         }
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
