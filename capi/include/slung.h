@@ -24,7 +24,7 @@
  *
  * Memory. Instances live in the caller's memory, need no destruction, and may be copied with memcpy: they hold no pointers, but
  * for those of a route to its table. The library allocates nothing, has no globals, and uses no libm. A step takes a bounded time
- * and at most 2.1 KiB of stack, a circle's 1.7 KiB; slung_create takes at most 18 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
+ * and at most 2 KiB of stack, a circle's 1.7 KiB; slung_create takes at most 18 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
  * as for any C function that uses floats.
  *
  * Errors. Every call returns SLUNG_OK or a negative status, and changes nothing when it refuses. slung_step is total: whatever
