@@ -362,6 +362,19 @@ fn the_campaign_on_satellite_fixes_lands_in_its_place() {
     land_in_place(&campaign, 6);
 }
 
+/// The same on cables that stretch by 0.5 to 5 % under their load, with a twentieth of critical
+/// damping, of which nothing is told.
+#[test]
+fn the_campaign_on_cables_that_stretch_lands_in_its_place() {
+    let rigid = campaign::builtin("ground-to-ground").expect("it is built in");
+    let ea = "9.81*load/(0.005*10^(draw_bearing/(2*pi)))";
+    let damping = format!("0.1*sqrt({ea}/rope*load*load_uav/(load + load_uav))");
+    let stretched = format!(
+        "{rigid}\n\"cable.ea\" = {{ formula = \"{ea}\" }}\n\"cable.damping\" = {{ formula = \"{damping}\" }}"
+    );
+    land_in_place(&Campaign::parse(&stretched).unwrap(), 12);
+}
+
 /// Flies the first `runs` of the campaign: all land softly, with the load in its place.
 fn land_in_place(campaign: &Campaign, runs: u64) {
     let rows: Vec<_> = (0..runs)

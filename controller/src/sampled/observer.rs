@@ -143,6 +143,8 @@ const LATE: f64 = 0.5;
 
 /// Bandwidth along the rod over the frequency of a bounce on the cable, at most.
 const BOUNCE_SHARE: f64 = 0.1;
+/// By how much the bandwidth along the rod grows while no bounce is seen, in half of the slowest.
+const HASTENED: f64 = 1.2;
 
 /// What an innovation is multiplied by to correct a velocity, the disturbance and, of a force, its
 /// rate.
@@ -303,12 +305,30 @@ impl<T: Real> Observer<T> {
     /// starting with what is usual `along` it, m/s².
     #[cold]
     pub(crate) fn yield_to(&mut self, bounce: T, rod: &Vector3<T>, along: T) {
+        self.along.most = self.along.most.min(bounce * T::lit(BOUNCE_SHARE));
+        self.slow(bounce, rod, along);
+    }
+
+    /// The same for now, to be [hastened](Self::hasten).
+    #[cold]
+    pub(crate) fn slow(&mut self, bounce: T, rod: &Vector3<T>, along: T) {
         let Disturbance { payload, payload_rate, .. } = &mut self.estimate;
         *payload += rod * (along - rod.dot(payload));
         *payload_rate -= rod * rod.dot(payload_rate);
+        self.set_along(self.along.bandwidth.min(bounce * T::lit(BOUNCE_SHARE)));
+    }
+
+    /// A step faster along the rod, up to what was told and what has been seen allows.
+    pub(crate) fn hasten(&mut self) {
+        let most = self.told_along.bandwidth.min(self.along.most);
+        if self.along.bandwidth < most {
+            self.set_along((self.along.bandwidth * T::lit(HASTENED)).min(most));
+        }
+    }
+
+    fn set_along(&mut self, bandwidth: T) {
         let Channel { gains, period, .. } = &self.payload;
-        let bandwidth = self.along.bandwidth.min(bounce * T::lit(BOUNCE_SHARE));
-        self.along = Along::new(bandwidth, self.along.most.min(bandwidth), gains, *period);
+        self.along = Along::new(bandwidth, self.along.most, gains, *period);
     }
 
     /// Forgets every estimate, and starts from `state`.

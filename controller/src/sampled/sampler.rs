@@ -21,7 +21,7 @@ use crate::law::solution::Answer;
 use crate::law::{Ahead, Law};
 use crate::ranges::MAX_THRUST;
 use crate::sampled::actuator::{Actuation, ActuatorLimits, Actuators};
-use crate::sampled::bounce::Bounce;
+use crate::sampled::bounce::{Bounce, Seen, slowest};
 use crate::sampled::observer::{Observer, ObserverParams};
 use crate::sampled::weight::Weight;
 use crate::sampling::Sampling;
@@ -171,9 +171,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let share = weight.learn(lambda, observer.estimate().payload.dot(&last.rod), *period);
         weighed.weigh(vehicle, share);
         let is_found = weight.is_known() && !was_known;
-        let frequency = bounce.look(weight.implied(), *period);
-        if let Some(frequency) = frequency {
-            self.yield_to(frequency, lambda);
+        if bounce.look(weight.implied(), *period) {
+            self.see_bounce(lambda);
         }
         if is_found {
             self.unburden();
@@ -188,20 +187,24 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         let Memory { weighed, weight, bounce, observer, last, actuators, period, .. } = &mut self.memory;
         let lambda = lambda(weighed, last, actuators.applied().thrust);
         let implied = weight.imply(lambda, observer.estimate().payload.dot(&last.rod));
-        let frequency = bounce.look(implied, *period);
-        if let Some(frequency) = frequency {
-            self.yield_to(frequency, lambda);
-        }
-        frequency.is_some()
+        bounce.look(implied, *period) && self.see_bounce(lambda)
     }
 
-    /// The observers are no faster along the rod than a bounce of this `frequency`, rad/s, allows,
-    /// and begin at its mean.
+    /// What there is to be seen of a bounce on the cable. After one the observers are no faster along
+    /// the rod than it allows, and begin at its mean. Whether there was one.
     #[cold]
     #[inline(never)]
-    fn yield_to(&mut self, frequency: T, lambda: T) {
-        let Memory { weight, bounce, observer, last, .. } = &mut self.memory;
-        observer.yield_to(frequency, &last.rod, weight.along(bounce.mean(), lambda));
+    fn see_bounce(&mut self, lambda: T) -> bool {
+        let Memory { vehicle, weight, bounce, observer, last, .. } = &mut self.memory;
+        match bounce.see(vehicle) {
+            Seen::Crossing => {}
+            Seen::Calm => observer.hasten(),
+            Seen::Bounce(frequency) => {
+                observer.yield_to(frequency, &last.rod, weight.along(bounce.mean(), lambda));
+                return true;
+            }
+        }
+        false
     }
 
     /// What everything weighs has just been found: the observers need not hold it up any more. Held
@@ -263,6 +266,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.zeta = self.continued(state);
         self.memory.u_zeta = T::zero();
         self.soften();
+    }
+
+    /// A law begins to fly. Along the rod it starts from the usual, and follows slowly until no bounce
+    /// on the cable has been seen for a while: it would have grown too large by then.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn join(&mut self, state: &State<T>) {
+        let Memory { vehicle, weighed, weight, bounce, observer, last, actuators, .. } = &mut self.memory;
+        let lambda = lambda(weighed, last, actuators.applied().thrust);
+        observer.slow(slowest(vehicle), &last.rod, weight.along(bounce.mean(), lambda));
+        self.carry_on(state);
     }
 
     /// No law flies any more: the next command's step fades, and what was not learnt yet is

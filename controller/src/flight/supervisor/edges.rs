@@ -102,7 +102,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
         match self.law.join(state, &self.pace) {
             Ok(()) => {
-                self.sampler.carry_on(state);
+                self.sampler.join(state);
                 self.mode = Mode::Join;
             }
             Err(Refused::Searching) => {}
