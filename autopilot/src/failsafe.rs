@@ -87,6 +87,11 @@ impl Failsafe {
         self.battery = Some(percent);
     }
 
+    /// What the battery has left, %, if that is known.
+    pub fn battery(&self) -> Option<i8> {
+        self.battery
+    }
+
     /// Whether it is lost now.
     pub fn is_lost(&self, loss: Loss, settings: &Settings) -> bool {
         match loss {

@@ -121,12 +121,16 @@ fn longest_payload(id: u32) -> Option<usize> {
     }
     lengths!(
         HEARTBEAT_DATA,
+        SYS_STATUS_DATA,
         PARAM_REQUEST_READ_DATA,
         PARAM_REQUEST_LIST_DATA,
         PARAM_VALUE_DATA,
         PARAM_SET_DATA,
+        ATTITUDE_DATA,
         ATTITUDE_QUATERNION_DATA,
         LOCAL_POSITION_NED_DATA,
+        GLOBAL_POSITION_INT_DATA,
+        VFR_HUD_DATA,
         MANUAL_CONTROL_DATA,
         RC_CHANNELS_OVERRIDE_DATA,
         COMMAND_INT_DATA,

@@ -9,5 +9,6 @@ mod ground;
 mod link;
 mod mission;
 mod modes;
+mod place;
 mod station;
 mod store;

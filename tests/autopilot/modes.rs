@@ -4,6 +4,7 @@
 use autopilot::{Answer, Autopilot, Boot, Setting};
 use controller::{Command, Mode, State, Vector3};
 use hil_sim::world::multibody::{Loads, Multibody};
+use link::MavMessage;
 use link::dialect::*;
 use rig::parameter;
 use witness::plant::VehicleParameters;
@@ -122,6 +123,28 @@ fn on_the_ground_it_disarms() {
     let last = down.skip_while(|answer| answer.command.mode != LoadMode::LOAD_MODE_OFF).last().expect("it lands");
     assert_eq!(last.outputs, [0.0; 4]);
     assert!(!flight.station.autopilot.is_armed());
+}
+
+#[test]
+fn px4_s_modes_are_those_that_mavsdk_means() {
+    let ask = |flight: &mut Flight, sub: f32| {
+        let custom = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u32 as f32;
+        let command = MavCmd::MAV_CMD_DO_SET_MODE as u16;
+        let request =
+            COMMAND_LONG_DATA { param1: custom, param2: 4.0, param3: sub, command, ..COMMAND_LONG_DATA::DEFAULT };
+        let replies = flight.station.say(&MavMessage::COMMAND_LONG(request));
+        matches!(&replies[..], [.., MavMessage::COMMAND_ACK(ack)] if ack.result == 0)
+    };
+    let mut flight = Flight::new();
+    flight.until(Mode::Follow, 30.0);
+    for (sub, mode) in [(3.0, Mode::Hold), (4.0, Mode::Join), (6.0, Mode::Land)] {
+        assert!(ask(&mut flight, sub), "{mode:?}");
+        flight.step();
+        assert_eq!(flight.mode(), mode);
+    }
+    // A return to launch is none of them.
+    assert!(!ask(&mut flight, 5.0));
+    assert_eq!(flight.mode(), Mode::Land);
 }
 
 #[test]

@@ -5,6 +5,7 @@
 mod common;
 mod mission;
 mod route;
+mod station;
 
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};

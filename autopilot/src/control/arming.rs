@@ -141,6 +141,12 @@ impl Autopilot {
         self.obey_kill();
     }
 
+    /// Whether nothing of the moment keeps it from being armed.
+    pub(crate) fn is_ready(&self) -> bool {
+        let is_lost = Loss::ALL.into_iter().any(|loss| self.failsafe.is_lost(loss, &self.settings));
+        self.since_state_s <= FRESH_S && !self.is_killed() && !is_lost
+    }
+
     fn is_killed(&self) -> bool {
         self.kill || self.kill_pin >= PRESSED
     }

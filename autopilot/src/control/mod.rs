@@ -25,7 +25,7 @@ pub use arming::ArmRefused;
 pub use mission::MissionState;
 pub use words::{Absence, Answer, Boot, Counters, Drive, Notice};
 
-use controller::{Fault, Margin, Mode, Request, State};
+use controller::{Actuation as _, Fault, Margin, Mode, Request, State, Uav};
 use link::dialect::{LOAD_COUNTERS_DATA, LOAD_STATE_DATA, MavLandedState};
 use rig::{Output, Rig, parameter};
 
@@ -55,6 +55,8 @@ pub struct Autopilot {
     estimator: Option<Estimator>,
     /// The UAV's own navigation was there at the last control period.
     navigates: bool,
+    /// The UAV as it was known then, from that or from the load's state.
+    uav: Option<Uav<f32>>,
     /// The vehicle is known to stand on the ground.
     stands: bool,
     epoch: Epoch,
@@ -107,6 +109,7 @@ impl Autopilot {
             navigation: Navigation::new(),
             estimator: None,
             navigates: false,
+            uav: None,
             stands: false,
             epoch: Epoch::default(),
             newest: None,
@@ -239,6 +242,17 @@ impl Autopilot {
         self.notice
     }
 
+    /// The UAV as it was known at the last control period.
+    #[must_use]
+    pub fn uav(&self) -> Option<&Uav<f32>> {
+        self.uav.as_ref()
+    }
+
+    /// The thrust of the last command, of what the rotors give at most.
+    pub(crate) fn throttle(&self) -> f32 {
+        self.rig.as_ref().map_or(0.0, |rig| rig.output().command.thrust / rig.actuators().largest_thrust())
+    }
+
     fn note(&mut self, notice: Notice) {
         self.notice = (self.notice.0.wrapping_add(1), notice);
     }
@@ -256,6 +270,11 @@ impl Autopilot {
     /// The battery has so much left, %.
     pub fn hear_battery(&mut self, percent: i8) {
         self.failsafe.hear_battery(percent);
+    }
+
+    /// What the battery has left, %, if that is known.
+    pub(crate) fn battery(&self) -> Option<i8> {
+        self.failsafe.battery()
     }
 
     /// Asks for something, now or for after arming.

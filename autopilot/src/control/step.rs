@@ -1,6 +1,6 @@
 //! A control period: from the states that have come to the command.
 
-use controller::{Command, Fault, Mode, Request, State};
+use controller::{Command, Fault, Mode, Request, State, Uav};
 use estimator::OutOfRange;
 use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, LoadSeen};
 use rig::{Output, Rig, parameter};
@@ -109,6 +109,8 @@ impl Autopilot {
         let (seen, unseen) = self.see(seen);
         let good = seen.good();
         self.navigates = seen.uav().is_some();
+        let length = self.settings.rig().get(parameter!("VEH_ROD"));
+        self.uav = seen.uav().copied().or_else(|| good.map(|state| above(state, length)));
         let refused = self.refused.take();
         self.absence = match good {
             Some(_) => None,
@@ -278,6 +280,12 @@ fn begin(rig: &mut Rig<f32, Flown>, action: LoadAction, zeta: [f32; 4], state: &
 /// Whether the frame has a finite ζ, if it is one to start with.
 fn may_start(frame: &LOAD_STATE_DATA) -> bool {
     frame.action != LoadAction::LOAD_ACTION_START || frame.zeta.iter().all(|z| z.is_finite())
+}
+
+/// The UAV of a load on a taut cable.
+fn above(state: &State<f32>, length: f32) -> Uav<f32> {
+    let State { position, velocity, rod, rod_rate, attitude, body_rate } = *state;
+    Uav { position: position - rod * length, velocity: velocity - rod_rate * length, attitude, body_rate }
 }
 
 /// Whether the law flies.

@@ -162,6 +162,7 @@ fn asked(request: &COMMAND_LONG_DATA) -> Option<Mode> {
         TAKE_OFF => Some(Mode::TakeOff),
         LAND => Some(Mode::Land),
         STANDARD => modes::standardized(request.param1),
+        _ if request.param3 > 0.0 => modes::of_px4(request.param2, request.param3),
         _ => {
             let is_custom = request.param1 as u8 & MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED as u8 != 0;
             let is_it = |mode| report::mode(mode) as u32 as f32 == request.param2;

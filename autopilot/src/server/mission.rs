@@ -275,8 +275,10 @@ impl Server {
             transfer.reached += 1;
             return seq.map(|seq| MavMessage::MISSION_ITEM_REACHED(MISSION_ITEM_REACHED_DATA { seq }));
         }
-        // Another round, another flight.
-        transfer.reached = transfer.reached.min(passed);
+        // Another round, another flight; noise about a waypoint is neither.
+        if passed == 0 || passed + 1 < transfer.reached {
+            transfer.reached = passed;
+        }
         let current = (autopilot.current_item(), autopilot.mission_state());
         let is_due = time_ns.saturating_sub(transfer.told_ns) > EVERY_NS && current.1 != MissionState::None;
         if current != transfer.current || is_due {

@@ -5,6 +5,7 @@ mod files;
 mod mission;
 mod modes;
 mod parameters;
+mod place;
 mod stick;
 
 use controller::{Fault, Margin, Mode};
@@ -18,6 +19,7 @@ use crate::store::NotKept;
 use commands::command_int;
 use files::Files;
 use mission::Transfer;
+use place::Place;
 use stick::Switches;
 
 /// What a ground station says that it is.
@@ -53,6 +55,7 @@ pub struct Server {
     switches: Switches,
     files: Files,
     transfer: Transfer,
+    place: Place,
 }
 
 impl Default for Server {
@@ -75,6 +78,7 @@ impl Server {
             switches,
             files: Files::new(),
             transfer: Transfer::new(),
+            place: Place::new(),
         }
     }
 
@@ -145,7 +149,20 @@ impl Server {
         })
     }
 
-    /// A message that nobody asked for: a new mode or fault, or the next parameter of a list. One
+    /// All that is said once a second.
+    #[must_use]
+    pub fn report(&self, autopilot: &Autopilot, lost_bytes: u32) -> [MavMessage; 5] {
+        [
+            Self::heartbeat(autopilot),
+            Self::system_status(autopilot),
+            Self::current_mode(autopilot),
+            Self::landed_state(autopilot),
+            self.counters(autopilot, lost_bytes),
+        ]
+    }
+
+    /// A message that nobody asked for: a new mode or fault, where the vehicle is, or the next
+    /// parameter of a list. One
     /// message a call, since a whole list would keep the control step waiting. `time_ns` is that of
     /// [`handle`](Self::handle).
     pub fn news(&mut self, time_ns: u64, autopilot: &Autopilot) -> Option<MavMessage> {
@@ -154,6 +171,9 @@ impl Server {
         }
         if let Some(news) = self.mission_news(time_ns, autopilot) {
             return Some(news);
+        }
+        if let Some(place) = self.place_news(time_ns, autopilot) {
+            return Some(place);
         }
         if let Some(index) = self.modes {
             let mode = modes::available(index);

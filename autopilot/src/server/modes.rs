@@ -38,6 +38,14 @@ pub fn standardized(number: f32) -> Option<Mode> {
     [Mode::Land, Mode::TakeOff].into_iter().find(|&mode| standard(mode) as u32 as f32 == number)
 }
 
+/// The mode that is a mode of PX4's, by that program's main mode and sub-mode: MAVSDK asks any
+/// vehicle that is not ArduPilot's for these.
+pub fn of_px4(main: f32, sub: f32) -> Option<Mode> {
+    const AUTO: f32 = 4.0;
+    let of = [(2.0, Mode::TakeOff), (3.0, Mode::Hold), (4.0, Mode::Follow), (6.0, Mode::Land)];
+    of.into_iter().find(|&(known, _)| main == AUTO && known == sub).map(|(_, mode)| mode)
+}
+
 /// The mode that it is in, and the one that was asked for.
 pub fn current(mode: Mode, request: Request) -> MavMessage {
     let intended = match request {

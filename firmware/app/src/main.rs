@@ -148,7 +148,7 @@ mod app {
                 if !lockstep && timer.is_due() {
                     autopilot.note_overrun();
                 }
-                if lockstep || autopilot.is_armed() {
+                if autopilot.drive() != Drive::Flight || autopilot.is_armed() {
                     *pending = Some(answer);
                     board::pend_link();
                 }
@@ -246,22 +246,10 @@ mod app {
         let report::SharedResources { mut autopilot, mut server, mut outbox, .. } = cx.shared;
         cx.local.led.toggle();
         let lost = outbox.lock(|outbox| outbox.lost);
-        let (heartbeat, mode, landed, counters) = (&mut autopilot, &mut server).lock(|autopilot, server| {
-            (
-                Server::heartbeat(autopilot),
-                Server::current_mode(autopilot),
-                Server::landed_state(autopilot),
-                server.counters(autopilot, lost),
-            )
-        });
-        outbox.lock(|outbox| {
-            outbox.send(&heartbeat);
-            outbox.send(&mode);
-            outbox.send(&landed);
-            outbox.send(&counters);
-        });
+        let messages = (&mut autopilot, &mut server).lock(|autopilot, server| server.report(autopilot, lost));
+        outbox.lock(|outbox| messages.iter().for_each(|message| outbox.send(message)));
         board::pend_link();
-        if let MavMessage::LOAD_COUNTERS(c) = &counters {
+        if let [.., MavMessage::LOAD_COUNTERS(c)] = &messages {
             defmt::info!(
                 "steps {=u32} missed {=u32} refused {=u32} overruns {=u32} fallbacks {=u32} bad frames {=u32} lost bytes {=u32} \
                  worst {=u32} cycles",

@@ -35,7 +35,7 @@ pub struct RouteArguments {
     file: PathBuf,
     /// The origin of N: latitude and longitude in degrees, height in m above the sea; in place of
     /// the file's own.
-    #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LAT,LON,ALT", value_parser = mission::home, allow_hyphen_values = true)]
     home: Option<Home>,
     /// Height of the ground, m above the sea, for heights that the file counts from the terrain.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
@@ -71,19 +71,6 @@ fn corner(text: &str) -> Result<f64, String> {
 fn within(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
     let inside = text.parse().ok().filter(|value| range.contains(value));
     inside.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
-}
-
-fn home(text: &str) -> Result<Home, String> {
-    let numbers: Vec<f64> = text
-        .split(',')
-        .map(|number| number.trim().parse::<f64>().map_err(|_| format!("\"{number}\" is no number")))
-        .collect::<Result<_, _>>()?;
-    let [latitude, longitude, altitude] =
-        numbers[..].try_into().map_err(|_| "three numbers: LAT,LON,ALT".to_owned())?;
-    if !(latitude.abs() <= 90.0 && longitude.abs() <= 180.0 && altitude.abs() <= 1e4) {
-        return Err("latitude within ±90 and longitude within ±180 degrees, height within ±10000 m".to_owned());
-    }
-    Ok(Home { latitude, longitude, altitude })
 }
 
 /// Speed where neither file nor command line says one, m/s.

@@ -158,6 +158,10 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
     let steps = scenario.steps();
     let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
     let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
+    let is_commanded = pilot.is_commanded();
+    let distance_at = |step: u64, state: &State<f64>| {
+        (!is_commanded && step.is_multiple_of(plan.distance_every)).then(|| distance_of(state))
+    };
     let lost_m = LOST_M.max(2.0 * distance_of(&plan.start));
 
     let mut requests = Requests::of(scenario);
@@ -184,7 +188,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             (has_begun, zeta) = (false, [0.0; 4]);
         }
         let state = world.body().state();
-        let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
+        let distance_m = distance_at(step, &state);
         if distance_m.is_some_and(|distance| distance > lost_m) {
             end = End::Lost(t_s);
             break;
@@ -232,7 +236,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             sight: sight.as_ref(),
             ..Moment::of(step, &world, &state, &ground)
         });
-        if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() {
+        if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() && !is_commanded {
             end = End::Landed(t_s);
             break;
         }
@@ -250,7 +254,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
     let state = world.body().state();
     // A state beyond all ranges is no number to log or to draw.
     if state.check().is_ok() {
-        let distance_m = step.is_multiple_of(plan.distance_every).then(|| distance_of(&state));
+        let distance_m = distance_at(step, &state);
         let request = requests.at(step).0;
         watch(&Moment { request, distance_m, is_over: true, ..Moment::of(step, &world, &state, &ground) });
     }

@@ -161,8 +161,30 @@ impl<'a> Metrics<'a> {
         self.touchdown = *touchdown;
     }
 
-    /// Adds the `state` at `t` (s), d_C (m) from the curve, and what the pilot made of it.
-    pub fn push(&mut self, t: f64, distance: f64, state: &State<f64>, decision: Option<&Decision>) {
+    /// Adds the `state` at `t` (s), d_C (m) from the curve if there is one to follow, and what the
+    /// pilot made of it.
+    pub fn push(&mut self, t: f64, distance: Option<f64>, state: &State<f64>, decision: Option<&Decision>) {
+        match distance {
+            Some(distance) => self.push_course(t, distance, state),
+            None => self.last_above = true,
+        }
+        // Not across an obstacle, after which the law begins anew.
+        let last_thrust = self.last_thrust.take();
+        if let Some(decision) = decision {
+            let thrust = decision.command.thrust;
+            let torque = decision.command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
+            self.effort += (thrust - self.hover_thrust).hypot(torque) * self.period;
+            self.peak_u = self.peak_u.max(thrust.hypot(torque));
+            self.min_thrust = self.min_thrust.min(thrust);
+            self.peak_torque = self.peak_torque.max(torque);
+            if let Some(last) = last_thrust.filter(|last| *last > 0.0) {
+                self.thrust_step = self.thrust_step.max((thrust / last - 1.0).abs());
+            }
+            self.last_thrust = Some(thrust);
+        }
+    }
+
+    fn push_course(&mut self, t: f64, distance: f64, state: &State<f64>) {
         // Comparisons that a NaN fails: a flight that ends as none has not settled.
         if distance < SETTLED_M {
             self.first_below_s.get_or_insert(t);
@@ -190,20 +212,6 @@ impl<'a> Metrics<'a> {
             self.radius.push(radius);
             self.p3.push(p3);
             self.speed.push(speed);
-        }
-        // Not across an obstacle, after which the law begins anew.
-        let last_thrust = self.last_thrust.take();
-        if let Some(decision) = decision {
-            let thrust = decision.command.thrust;
-            let torque = decision.command.torque.iter().map(|axis| axis * axis).sum::<f64>().sqrt();
-            self.effort += (thrust - self.hover_thrust).hypot(torque) * self.period;
-            self.peak_u = self.peak_u.max(thrust.hypot(torque));
-            self.min_thrust = self.min_thrust.min(thrust);
-            self.peak_torque = self.peak_torque.max(torque);
-            if let Some(last) = last_thrust.filter(|last| *last > 0.0) {
-                self.thrust_step = self.thrust_step.max((thrust / last - 1.0).abs());
-            }
-            self.last_thrust = Some(thrust);
         }
     }
 

@@ -27,6 +27,12 @@ pub trait Answers {
         false
     }
 
+    /// Whether somebody else says what it does: then neither the scenario's requests nor its path
+    /// count, and no landing ends the flight.
+    fn is_commanded(&self) -> bool {
+        false
+    }
+
     /// The command for the hold that begins at `t_s`, from what is read then and what is asked for;
     /// `None` if there will be no more.
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision>;

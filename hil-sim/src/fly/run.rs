@@ -108,8 +108,7 @@ pub fn fly_watched(
     let mut flown_s = 0.0;
     let end = super::flight::fly(scenario, &plan, &mut pilot, &mut |moment| {
         flown_s = moment.step as f64 * period;
-        let distance_m = moment.distance_m.unwrap_or(f64::NAN);
-        metrics.push(flown_s, distance_m, moment.state, moment.decision);
+        metrics.push(flown_s, moment.distance_m, moment.state, moment.decision);
         metrics.touch(moment.touchdown);
         if moment.step % log_every == 0 || moment.is_over {
             // At the start as they were given: there and back they would be rounded.
@@ -120,7 +119,7 @@ pub fn fly_watched(
                 x,
                 uav_position,
                 uav_velocity,
-                distance_m,
+                distance_m: moment.distance_m.unwrap_or(f64::NAN),
                 decision: moment.decision.copied(),
                 seen: moment.sight.and_then(Seen::of),
                 contact: Contact::of(moment.body),

@@ -18,7 +18,7 @@ pub struct Sample {
     pub uav_position: Vector3<f64>,
     /// Of the UAV in N, m/s.
     pub uav_velocity: Vector3<f64>,
-    /// d_C, m.
+    /// d_C, m; NaN where no path is the scenario's to follow.
     pub distance_m: f64,
     /// What the pilot answered; none while an obstacle holds the vehicle, and none at the end.
     pub decision: Option<Decision>,

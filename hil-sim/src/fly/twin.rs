@@ -88,6 +88,10 @@ impl Answers for Twinned<'_> {
         self.ask(Asked::SpeedFactor(factor));
     }
 
+    fn is_commanded(&self) -> bool {
+        self.pilot.is_commanded()
+    }
+
     fn lands(&self) -> bool {
         self.pilot.lands()
     }

@@ -7,7 +7,8 @@ use clap::Args;
 use comfy_table::Table;
 use serde::Serialize;
 
-use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Target, mission};
+use super::{Emulator, Endpoint, HilError, Options, Pace, Station, Statistics, Target, USUAL, mission};
+use crate::describe::mission::{Home, home};
 use crate::describe::parameters::{Unsupported, parameters};
 use crate::describe::scenario::Scenario;
 use crate::fly::batch::Outcome;
@@ -15,14 +16,14 @@ use crate::fly::flight::{Control, End};
 use crate::fly::run;
 use crate::fly::sample::Sample;
 
-/// Where the target is: one of these.
+/// Where the target is: one of these; or, for a ground station, in this program.
 #[derive(Args, Clone, Debug)]
-#[group(required = true, multiple = false)]
+#[group(multiple = false)]
 pub struct Place {
     /// Serial port of the target.
     #[arg(long)]
     pub port: Option<String>,
-    /// Socket of the target: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT.
+    /// Socket of the target: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT; or here, in this program.
     #[arg(long, value_name = "ENDPOINT")]
     pub connect: Option<String>,
     /// Image to start in QEMU.
@@ -63,6 +64,15 @@ pub struct Arguments {
     /// port if it is 0.
     #[arg(long, value_name = "PORT", num_args = 0..=1, require_equals = true, default_missing_value = "8420")]
     pub live: Option<u16>,
+    /// Leave the vehicle to a ground station that listens at udp:HOST:PORT: it arms, asks for modes
+    /// and sends missions, and the scenario's requests do not count. The flight goes by the clock
+    /// on the wall until Ctrl-C, or the scenario's end.
+    #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = USUAL)]
+    pub station: Option<String>,
+    /// Where on the earth N has its origin, for a ground station: latitude and longitude in
+    /// degrees, height in m above the sea.
+    #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true, default_value = "53.527,-113.529,668", requires = "station")]
+    pub home: Home,
     /// Seconds without an answer after which the target is lost.
     #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = patience)]
     pub patience: f64,
@@ -139,10 +149,14 @@ pub fn fly_all(
     control: Control<'_>,
     see: &mut See<'_>,
 ) -> Result<Flown, HilError> {
+    let Place { port, connect, emulate } = &arguments.place;
+    let station = arguments.station.as_deref().map(Station::open).transpose()?;
+    // An emulator has a clock of its own, which no real time can go by.
+    let is_by_clock = arguments.real_time || station.is_some() && emulate.is_none();
     let options = Options {
-        pace: if arguments.real_time { Pace::RealTime } else { Pace::Lockstep },
+        pace: if is_by_clock { Pace::RealTime } else { Pace::Lockstep },
         patience: Duration::from_secs_f64(arguments.patience),
-        telemetry: !arguments.no_telemetry,
+        telemetry: !arguments.no_telemetry && station.is_none(),
         ..Options::default()
     };
     for scenario in &scenarios {
@@ -156,17 +170,19 @@ pub fn fly_all(
             mission::items(route).map_err(refused)?;
         }
     }
-    let mut target = match (&arguments.place.port, &arguments.place.connect, &arguments.place.emulate) {
+    let mut target = match (port, connect, emulate) {
         (Some(port), ..) => {
             Target::connect(Endpoint::Serial { port: port.clone(), baud: arguments.baud }, None, options)?
         }
         (_, Some(endpoint), _) => Target::connect(endpoint.parse()?, None, options)?,
         (.., Some(image)) => Target::emulated(Emulator::start(&arguments.machine, image, arguments.count)?, options)?,
-        _ => return Err(HilError::Endpoint(String::new())),
+        _ if station.is_some() => Target::connect(Endpoint::Here, None, options)?,
+        _ => return Err(HilError::NoTarget),
     };
+    let mut station = station.map(|station| (station, arguments.home));
     let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
     for scenario in scenarios {
-        match fly_one(&mut target, scenario, (options.telemetry, control), see, &mut flown) {
+        match fly_one(&mut target, scenario, station.take(), (options.telemetry, control), see, &mut flown) {
             Ok(true) => {}
             Ok(false) => break,
             Err(error) if flown.outcomes.is_empty() => return Err(error),
@@ -179,20 +195,28 @@ pub fn fly_all(
     Ok(flown)
 }
 
-/// One flight, from arming to disarming; whether to go on.
+/// One flight, from arming to disarming, or as long as a station has it; whether to go on.
 fn fly_one(
     target: &mut Target,
     scenario: Scenario,
+    station: Option<(Station, Home)>,
     (twin, control): (bool, Control<'_>),
     see: &mut See<'_>,
     flown: &mut Flown,
 ) -> Result<bool, HilError> {
-    target.prepare(&scenario)?;
+    let is_commanded = station.is_some();
+    match station {
+        Some((station, home)) => target.leave_to(station, &scenario, home)?,
+        None => target.prepare(&scenario)?,
+    }
     let begun = Instant::now();
     let mut flight = run::fly_watched(&scenario, target, twin, control, &mut |log| see(&scenario, log, None))
         .map_err(|error| HilError::Unsupported(error.to_string()))?;
     see(&scenario, &flight.log, Some(flight.end));
     let elapsed_s = begun.elapsed().as_secs_f64();
+    if is_commanded && flight.end == End::Interrupted {
+        flight.end = End::Complete;
+    }
     let end = flight.end;
     if end == End::Interrupted {
         target.disarm()?;

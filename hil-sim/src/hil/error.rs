@@ -9,7 +9,7 @@ use crate::describe::parameters::Unsupported;
 #[derive(Debug, thiserror::Error)]
 pub enum HilError {
     /// Not an endpoint.
-    #[error("{0:?} is no endpoint: unix:PATH, tcp:HOST:PORT or udp:HOST:PORT")]
+    #[error("{0:?} is no endpoint: here, unix:PATH, tcp:HOST:PORT or udp:HOST:PORT")]
     Endpoint(String),
     /// There is no such serial port, or it is not ours to open.
     #[error("cannot open the serial port {port}: {source}; {}", ports(.available))]
@@ -26,6 +26,17 @@ pub enum HilError {
     Connect {
         /// Where.
         endpoint: Endpoint,
+        /// The system's reason.
+        source: std::io::Error,
+    },
+    /// Nobody said where the target is.
+    #[error("where is the target? --port, --connect or --emulate say it; with --station it may be here")]
+    NoTarget,
+    /// No way to a ground station.
+    #[error("no way to a ground station at {address}: {source}")]
+    Station {
+        /// Where.
+        address: String,
         /// The system's reason.
         source: std::io::Error,
     },

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use link::{Decoder, Encoder, MavMessage};
 
-use super::{Emulator, Endpoint, HilError, Options, Statistics, Wire};
+use super::{Emulator, Endpoint, HilError, Options, Station, Statistics, Wire};
 
 /// A line that is open, with what has come over it.
 pub struct Line {
@@ -19,6 +19,8 @@ pub struct Line {
     encoder: Encoder,
     inbox: VecDeque<MavMessage>,
     received_bytes: u64,
+    /// Who commands the target, if it is not this program.
+    pub station: Option<Station>,
     /// What the line has seen.
     pub statistics: Statistics,
 }
@@ -42,6 +44,7 @@ impl Line {
             encoder: Encoder::new(link::STATION),
             inbox: VecDeque::new(),
             received_bytes: 0,
+            station: None,
             statistics: Statistics::default(),
         }
     }
@@ -104,14 +107,29 @@ impl Line {
 
     /// What comes unasked.
     pub fn note(&mut self, message: &MavMessage) {
+        if let Some(station) = &mut self.station {
+            station.tell(message);
+        }
         if let MavMessage::STATUSTEXT(text) = message {
             self.statistics.texts.push(link::text_of(&*text.text).to_owned());
         }
     }
 
+    /// Passes on what the station has said, as whoever says it.
+    pub fn relay(&mut self) -> Result<(), HilError> {
+        let Some(station) = &mut self.station else { return Ok(()) };
+        let mut bytes = Vec::new();
+        station.hear(|message, address| bytes.extend_from_slice(Encoder::new(address).frame(&message).bytes()));
+        if bytes.is_empty() { Ok(()) } else { self.write(&bytes) }
+    }
+
     pub fn transmit(&mut self, message: &MavMessage) -> Result<(), HilError> {
         let frame = self.encoder.frame(message);
-        match self.wire.write_all(frame.bytes()) {
+        self.write(frame.bytes())
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<(), HilError> {
+        match self.wire.write_all(bytes) {
             Ok(()) => Ok(()),
             Err(error) => self.mend(error),
         }

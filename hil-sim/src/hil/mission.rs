@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use autopilot::{Setting, Settings};
 use controller::{End, Waypoint};
+use link::Home;
 use link::dialect::{MISSION_ITEM_INT_DATA, MavCmd, MavFrame, MavMissionType};
 use rig::Refused;
 
@@ -82,6 +83,23 @@ pub fn items(route: &RouteSpec) -> Result<Vec<MISSION_ITEM_INT_DATA>, Unsupporte
         push(MavCmd::MAV_CMD_NAV_LAND, [0.0, 0.0, 0.0, f32::NAN], waypoints[waypoints.len() - 1].point);
     }
     Ok(all)
+}
+
+/// The same as ground stations draw them: places in latitude, longitude and height above `home`, to
+/// half a hundredth of a metre, and none where an item has none.
+pub fn on_earth(items: &[MISSION_ITEM_INT_DATA], home: Home) -> Vec<MISSION_ITEM_INT_DATA> {
+    // Commands beyond are no places.
+    const LAST: u16 = MavCmd::MAV_CMD_NAV_SPLINE_WAYPOINT as u16;
+    let item = |item: &MISSION_ITEM_INT_DATA| {
+        let [x, y] = home.place([item.x, item.y].map(|step| (f64::from(step) / STEPS) as f32));
+        if item.command <= LAST {
+            let frame = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
+            MISSION_ITEM_INT_DATA { x, y, z: -item.z, frame, ..item.clone() }
+        } else {
+            MISSION_ITEM_INT_DATA { x: 0, y: 0, z: 0.0, frame: MavFrame::MAV_FRAME_MISSION as u8, ..item.clone() }
+        }
+    };
+    items.iter().map(item).collect()
 }
 
 /// Sets the mission's numbers that no item says.

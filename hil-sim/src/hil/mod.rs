@@ -8,6 +8,9 @@
 //! In lockstep each state frame is one control step, and a frame or its answer may be lost: the
 //! same frame is sent again, and the target answers the same number with the same command. So
 //! neither a slow host, nor a noisy line, nor a line that was cut and is back changes any result.
+//!
+//! A [`Station`] may command the target in place of a scenario's requests: what it says goes to the
+//! target, what the target says to it, and here is only what the vehicle would be.
 
 mod command;
 mod datagrams;
@@ -17,6 +20,7 @@ mod line;
 mod mission;
 mod options;
 mod soft;
+mod station;
 mod statistics;
 mod target;
 mod wire;
@@ -25,7 +29,8 @@ pub use command::{Arguments, Flown, LinkReport, See, fly_all, lateness, table};
 pub use emulator::Emulator;
 pub use error::HilError;
 pub use options::{Options, Pace};
-pub use soft::serve;
+pub use soft::{Here, serve};
+pub use station::{Station, USUAL};
 pub use statistics::Statistics;
 pub use target::Target;
 pub use wire::{Endpoint, Listener, Wire};

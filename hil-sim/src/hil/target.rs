@@ -4,12 +4,12 @@ use std::time::{Duration, Instant};
 
 use autopilot::{Setting, Settings};
 use controller::{Command, Margins, Measured, Mode, Request, State, Uav, Vector3};
-use link::MavMessage;
 use link::dialect::*;
+use link::{Home, MavMessage};
 use rig::{Refused, parameter, run};
 
 use super::line::Line;
-use super::{Emulator, Endpoint, HilError, Options, Pace, Statistics, Wire, mission};
+use super::{Emulator, Endpoint, HilError, Options, Pace, Station, Statistics, Wire, mission};
 use crate::describe::parameters::parameters;
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
@@ -25,6 +25,9 @@ enum Begin {
     /// On the ground.
     Standing,
 }
+
+/// A flight by the clock on the wall that falls further behind goes on from there.
+const MOST_BEHIND: Duration = Duration::from_millis(100);
 
 /// A target that is ready to fly.
 pub struct Target {
@@ -47,6 +50,8 @@ pub struct Target {
     log_every: u64,
     command: Option<LOAD_COMMAND_DATA>,
     epoch: Instant,
+    /// When the last command came to a flight that a station commands.
+    heard: Instant,
     failure: Option<HilError>,
 }
 
@@ -93,6 +98,7 @@ impl Target {
             log_every: 1,
             command: None,
             epoch: Instant::now(),
+            heard: Instant::now(),
             failure: None,
         };
         let begun = Instant::now();
@@ -138,6 +144,24 @@ impl Target {
     /// # Errors
     /// The scenario can't be flown there, or the target or the line fails.
     pub fn prepare(&mut self, scenario: &Scenario) -> Result<(), HilError> {
+        self.set_up(scenario, None)?;
+        self.arm(true)
+    }
+
+    /// Sets the target up for `scenario`, about `home` on the earth, and leaves it to `station`,
+    /// which arms it and asks for modes. Flights go by the clock on the wall.
+    ///
+    /// # Errors
+    /// The scenario can't be flown there, or the target or the line fails.
+    pub fn leave_to(&mut self, station: Station, scenario: &Scenario, home: Home) -> Result<(), HilError> {
+        self.set_up(scenario, Some(home))?;
+        // Whatever the station sets them to.
+        self.limits = (f32::MAX, [f32::MAX; 3]);
+        self.line.station = Some(station);
+        Ok(())
+    }
+
+    fn set_up(&mut self, scenario: &Scenario, home: Option<Home>) -> Result<(), HilError> {
         let ControllerSpec { law, rate_hz, rate_loop_s, .. } = &scenario.controller;
         if rate_loop_s.is_some() {
             return Err(HilError::Unsupported("actuators.rate_loop: the target commands rotors".into()));
@@ -154,24 +178,29 @@ impl Target {
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
         let unsupported = |refused: Refused<f32>| HilError::Unsupported(refused.to_string());
         settings.set(Setting::DRIVE, simulate).map_err(unsupported)?;
-        // What the vehicle can give has been compared with what its path asks for.
-        settings.set(Setting::ARMING_THRUST, 1.0).map_err(unsupported)?;
-        // With the states that ask for it.
-        settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
+        if home.is_none() {
+            // What the vehicle can give has been compared with what its path asks for.
+            settings.set(Setting::ARMING_THRUST, 1.0).map_err(unsupported)?;
+            // With the states that ask for it.
+            settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
+        }
         self.arm(false)?;
+        if let Some(home) = home {
+            self.set_home(home)?;
+        }
         if let Some(route) = law.route() {
             mission::set_pace(route, &mut settings).map_err(unsupported)?;
             self.configure(&settings)?;
-            self.upload(&mission::items(route)?)?;
+            let items = mission::items(route)?;
+            self.upload(&home.map_or_else(|| items.clone(), |home| mission::on_earth(&items, home)))?;
         } else {
             self.configure(&settings)?;
         }
-        self.arm(true)?;
         (self.rate_hz, self.log_every) = (*rate_hz, scenario.log_every());
         let begin = if scenario.standing { Begin::Standing } else { Begin::Begun };
         (self.zeta, self.begin, self.command) = ([0.0; 4], begin, None);
         (self.request, self.is_down, self.lands) = (Request::Idle, false, false);
-        self.epoch = Instant::now();
+        (self.epoch, self.heard) = (Instant::now(), Instant::now());
         Ok(())
     }
 
@@ -181,6 +210,9 @@ impl Target {
     /// # Errors
     /// The target's, or the line's.
     pub fn fly(&mut self, measured: &Measured<'_, f64>, request: Request, t_s: f64) -> Result<Decision, HilError> {
+        if self.line.station.is_some() {
+            return self.commanded(measured, t_s);
+        }
         let asks_itself = matches!(self.begin, Begin::On(_)) && request == Request::Follow;
         if self.request != request && !asks_itself && !self.is_down {
             self.ask_for(request)?;
@@ -248,6 +280,19 @@ impl Target {
         }
         let reason = self.line.statistics.texts.last().cloned().unwrap_or_default();
         Err(HilError::Parameter { name: name.to_owned(), wanted: value, kept, reason })
+    }
+
+    /// Tells where on the earth N has its origin.
+    fn set_home(&mut self, home: Home) -> Result<(), HilError> {
+        let steps = |degrees: f64| (degrees * 1e7).round() as i32;
+        let question = MavMessage::SET_GPS_GLOBAL_ORIGIN(SET_GPS_GLOBAL_ORIGIN_DATA {
+            latitude: steps(home.latitude),
+            longitude: steps(home.longitude),
+            altitude: (home.altitude * 1e3).round() as i32,
+            target_system: link::CONTROLLER.0,
+            time_usec: 0,
+        });
+        self.line.ask(&question, |message| matches!(message, MavMessage::GPS_GLOBAL_ORIGIN(_)).then_some(()))
     }
 
     fn configure(&mut self, settings: &Settings) -> Result<(), HilError> {
@@ -413,6 +458,61 @@ impl Target {
         self.decide(&command, telemetry.as_ref())
     }
 
+    /// A period of a flight that a station commands. What the target says is passed on to it until
+    /// the period is over.
+    fn commanded(&mut self, measured: &Measured<'_, f64>, t_s: f64) -> Result<Decision, HilError> {
+        let begun = Instant::now();
+        let behind = begun.saturating_duration_since(self.epoch + Duration::from_secs_f64(t_s));
+        self.line.statistics.behind_s = self.line.statistics.behind_s.max(behind.as_secs_f64());
+        if behind > MOST_BEHIND {
+            // Time that has been lost is not made up for.
+            self.epoch += behind;
+        }
+        let due = self.epoch + Duration::from_secs_f64(t_s) + self.period;
+        self.line.relay()?;
+        let decision = if self.line.options().pace == Pace::Lockstep {
+            Some(self.lockstep(measured, t_s)?)
+        } else {
+            let frame = self.frame(measured, t_s);
+            self.line.transmit(&MavMessage::LOAD_STATE(frame))?;
+            None
+        };
+        let mut fresh = None;
+        let mut is_over = false;
+        loop {
+            while let Some(message) = self.line.next() {
+                match message {
+                    MavMessage::LOAD_COMMAND(data) => {
+                        self.line.statistics.latencies_s.push(begun.elapsed().as_secs_f64());
+                        fresh = Some(data);
+                    }
+                    other => self.line.note(&other),
+                }
+            }
+            // However late it is, what has come is read once.
+            if is_over {
+                break;
+            }
+            let left = due.saturating_duration_since(Instant::now());
+            is_over = left.is_zero();
+            self.line.receive(left)?;
+        }
+        if let Some(decision) = decision {
+            return Ok(decision);
+        }
+        if let Some(command) = fresh {
+            self.heard = Instant::now();
+            let decision = self.decide(&command, None);
+            self.command = Some(command);
+            return decision;
+        }
+        self.line.statistics.late += 1;
+        if self.heard.elapsed() > self.line.options().patience {
+            return Err(self.line.lost(self.heard, 1));
+        }
+        self.command.clone().map_or_else(|| Ok(down()), |command| self.decide(&command, None))
+    }
+
     /// What a command says, once it is found to be one.
     fn decide(
         &mut self,
@@ -420,6 +520,14 @@ impl Target {
         telemetry: Option<&LOAD_TELEMETRY_DATA>,
     ) -> Result<Decision, HilError> {
         let sequence = command.sequence;
+        if self.line.station.is_some() && command.mode == LoadMode::LOAD_MODE_OFF {
+            // Armed since the last state, it has to be told how it finds the vehicle.
+            if command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE) {
+                self.begin = Begin::Standing;
+            }
+            self.line.statistics.cycles.push(command.cycles);
+            return Ok(down());
+        }
         if command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE)
             || command.faults.contains(LoadFault::LOAD_FAULT_NOT_ARMED)
         {
@@ -493,6 +601,10 @@ impl Answers for Target {
 
     fn lands(&self) -> bool {
         self.lands
+    }
+
+    fn is_commanded(&self) -> bool {
+        self.line.station.is_some()
     }
 
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {

@@ -11,10 +11,13 @@ use std::time::Duration;
 
 use super::HilError;
 use super::datagrams::Datagrams;
+use super::soft::Here;
 
 /// Where a target is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Endpoint {
+    /// The flight program in this process.
+    Here,
     /// A serial port.
     Serial {
         /// As the system names it.
@@ -34,6 +37,9 @@ impl FromStr for Endpoint {
     type Err = HilError;
 
     fn from_str(text: &str) -> Result<Self, HilError> {
+        if text == "here" {
+            return Ok(Self::Here);
+        }
         match text.split_once(':') {
             Some(("unix", path)) if !path.is_empty() => Ok(Self::Unix(path.into())),
             Some(("tcp", address)) if address.contains(':') => Ok(Self::Tcp(address.to_owned())),
@@ -46,6 +52,7 @@ impl FromStr for Endpoint {
 impl fmt::Display for Endpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Here => f.write_str("here"),
             Self::Serial { port, baud } => write!(f, "{port} at {baud} baud"),
             Self::Unix(path) => write!(f, "unix:{}", path.display()),
             Self::Tcp(address) => write!(f, "tcp:{address}"),
@@ -94,6 +101,7 @@ impl Endpoint {
     pub fn open(&self) -> Result<Box<dyn Wire>, HilError> {
         let refused = |source| HilError::Connect { endpoint: self.clone(), source };
         match self {
+            Self::Here => Ok(Box::new(Here::new())),
             Self::Serial { port, baud } => match serialport::new(port, *baud).timeout(WRITE_PATIENCE).open() {
                 Ok(port) => Ok(Box::new(port)),
                 Err(source) => {

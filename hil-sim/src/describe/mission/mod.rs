@@ -16,6 +16,23 @@ pub use link::Home;
 
 use controller::Vector3;
 
+/// The home that LAT,LON,ALT says, as a command line has it: degrees, and m above the sea.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn home(text: &str) -> Result<Home, String> {
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|number| number.trim().parse::<f64>().map_err(|_| format!("\"{number}\" is no number")))
+        .collect::<Result<_, _>>()?;
+    let [latitude, longitude, altitude] =
+        numbers[..].try_into().map_err(|_| "three numbers: LAT,LON,ALT".to_owned())?;
+    if !(latitude.abs() <= 90.0 && longitude.abs() <= 180.0 && altitude.abs() <= 1e4) {
+        return Err("latitude within ±90 and longitude within ±180 degrees, height within ±10000 m".to_owned());
+    }
+    Ok(Home { latitude, longitude, altitude })
+}
+
 /// Where a point of a mission is, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spot {

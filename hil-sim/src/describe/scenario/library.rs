@@ -50,6 +50,12 @@ pub const CURVES: &[(&str, &str)] = scenarios![
 /// Routes: what a curve that closes without crossing itself can't be.
 pub const ROUTES: &[(&str, &str)] = scenarios!["figure-eight", "survey-rows", "helix", "a-to-b", "two-kilometres"];
 
+/// A vehicle on the ground with a mission about home, which a ground station flies unless another
+/// is named.
+pub const STATION: &str = "ground-station";
+
+const OTHERS: &[(&str, &str)] = scenarios!["ground-station"];
+
 /// The scenario of this name, if there is one.
 ///
 /// # Errors
@@ -65,7 +71,7 @@ pub fn builtin_names() -> impl Iterator<Item = &'static str> {
 }
 
 fn all() -> impl Iterator<Item = &'static (&'static str, &'static str)> {
-    FIGURES.iter().chain(CURVES).chain(ROUTES)
+    FIGURES.iter().chain(CURVES).chain(ROUTES).chain(OTHERS)
 }
 
 #[cfg(test)]

@@ -49,7 +49,7 @@ mod requests;
 mod steady;
 
 pub use estimator::EstimatorSpec;
-pub use library::{CURVES, FIGURES, ROUTES, builtin, builtin_names};
+pub use library::{CURVES, FIGURES, ROUTES, STATION, builtin, builtin_names};
 pub use requests::{Asked, Requests};
 
 use controller::{

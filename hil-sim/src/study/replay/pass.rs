@@ -93,7 +93,7 @@ impl<'a> Pass<'a> {
             // In a gap of the log there is nothing to show.
             let Some((uav, shown)) = uav.zip(truth.or(found.map(|found| found.state))) else { continue };
             let distance_m = scenario.controller.law.distance(shown.position.into());
-            metrics.push(t_s, distance_m, &shown, decision.as_ref());
+            metrics.push(t_s, Some(distance_m), &shown, decision.as_ref());
             if step.is_multiple_of(log_every) || step == steps {
                 log.push(Sample {
                     t_s,
