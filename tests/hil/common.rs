@@ -37,9 +37,9 @@ impl<A: Answers> Answers for Recorded<A> {
         self.inner.lands()
     }
 
-    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
         let decision = self.inner.step(read, request, t_s)?;
-        let Decision { command, zeta, .. } = decision;
+        let Decision { command, zeta, .. } = *decision;
         let [t1, t2, t3] = command.torque.into();
         let [z1, z2, z3, z4] = zeta;
         // The law computes in f32, so nothing is lost.

@@ -28,6 +28,7 @@ struct Watched {
     supervisor: Supervisor<f32, Follow<f32, FlownPath<f32>>>,
     place: (usize, f64),
     largest_step: f64,
+    decision: Decision,
 }
 
 impl Watched {
@@ -41,7 +42,7 @@ impl Watched {
             .unwrap();
         let (envelope, approach) = (EnvelopeParams::wide(), ApproachLimits::gentle());
         let supervisor = Supervisor::new(follower, envelope, approach, Policy::default()).unwrap();
-        Self { supervisor, place: (0, 0.0), largest_step: 0.0 }
+        Self { supervisor, place: (0, 0.0), largest_step: 0.0, decision: Decision::off() }
     }
 
     /// Run, parameter, and the spans of a closed one.
@@ -62,7 +63,7 @@ impl Answers for Watched {
         self.supervisor.take_over(&state.cast(), applied.cast()).unwrap();
     }
 
-    fn step(&mut self, read: &Reading, request: Request, _: f64) -> Option<Decision> {
+    fn step(&mut self, read: &Reading, request: Request, _: f64) -> Option<&Decision> {
         let follows = self.supervisor.mode() == Mode::Follow;
         let output = self.supervisor.step(Some(&read.state.cast()), request);
         let (command, mode, fault) = (output.command.cast(), output.mode, output.fault);
@@ -72,7 +73,8 @@ impl Answers for Watched {
             self.largest_step = self.largest_step.max(step.min(round - step));
         }
         self.place = (run, parameter);
-        Some(Decision { command, zeta: [0.0; 4], mode, fault, margins: None, telemetry: None, body_rate: None })
+        self.decision = Decision { command, mode, fault, ..Decision::off() };
+        Some(&self.decision)
     }
 }
 

@@ -210,7 +210,8 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             step += 1;
             continue;
         }
-        let mut read = match &mut sight {
+        let comes = !(has_begun && world.misses());
+        let read = match &mut sight {
             Some(sight) => sight.see(&world, &applied),
             None => world.read(&state),
         };
@@ -220,19 +221,19 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
                 Entry::Hover => pilot.take_over(&read.state, &hover),
             }
         }
-        read.comes = !(has_begun && world.misses());
+        read.comes = comes;
         // Whether it stands or flies, the first reading says.
         read.sees_load |= !has_begun;
         has_begun = true;
         // A controller counts its periods.
-        let Some(decision) = pilot.step(&read, request, step as f64 * period) else {
+        let Some(decision) = pilot.step(read, request, step as f64 * period) else {
             end = End::Unanswered(t_s);
             break;
         };
         watch(&Moment {
             request,
             distance_m,
-            decision: Some(&decision),
+            decision: Some(decision),
             sight: sight.as_ref(),
             ..Moment::of(step, &world, &state, &ground)
         });
@@ -243,9 +244,9 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
         applied = decision.command;
         world.obey(decision.order());
         step += 1;
-        // Each component: a sum could overflow.
+        // Nothing but an infinity and a NaN makes something of zero.
         let Command { thrust, torque } = &decision.command;
-        let finite = thrust.is_finite() && torque.iter().all(|axis| axis.is_finite());
+        let finite = (torque * 0.0).sum() + thrust * 0.0 == 0.0;
         if !(finite && world.body().is_finite()) {
             end = End::NotFinite(t_s);
             break;

@@ -35,7 +35,7 @@ pub trait Answers {
 
     /// The command for the hold that begins at `t_s`, from what is read then and what is asked for;
     /// `None` if there will be no more.
-    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision>;
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision>;
 }
 
 /// A controller at work in the scalar `T`.
@@ -48,6 +48,8 @@ pub struct Pilot<T: Real, A = Actuators<T>> {
     /// It is above a rate loop.
     gives_rates: bool,
     has_telemetry: bool,
+    /// The last answer.
+    decision: Decision,
 }
 
 /// One answer of a pilot.
@@ -97,6 +99,20 @@ pub struct Observed {
 }
 
 impl Decision {
+    /// Rotors off, with no more to say.
+    #[must_use]
+    pub fn off() -> Self {
+        Self {
+            command: Command::zero(),
+            body_rate: None,
+            zeta: [0.0; 4],
+            mode: Mode::Off,
+            fault: None,
+            margins: None,
+            telemetry: None,
+        }
+    }
+
     /// What the vehicle is told.
     #[must_use]
     pub fn order(&self) -> Order {
@@ -157,6 +173,7 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
             joins: spec.supervised,
             gives_rates: spec.rate_loop_s.is_some(),
             has_telemetry: true,
+            decision: Decision::off(),
         })
     }
 
@@ -173,7 +190,7 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
 
     /// The command for the hold that begins at `t_s`, from what is read then.
     #[inline]
-    pub fn decide(&mut self, read: &Reading, request: Request, t_s: f64) -> Decision {
+    pub fn decide(&mut self, read: &Reading, request: Request, t_s: f64) -> &Decision {
         let state: State<T> = read.state.cast();
         let uav = read.uav.as_ref().map(Uav::cast);
         let specific_force = read.specific_force.map(|force| force.map(T::lit));
@@ -181,18 +198,18 @@ impl<T: Real, A: Actuation<T>> Pilot<T, A> {
         let measured = if read.comes { all } else { None.into() };
         let phase = self.reference.map_or(T::zero(), |reference| reference.phase(t_s));
         // Both are those at the sample.
-        let zeta = *self.rig.zeta();
+        self.decision.zeta = self.rig.zeta().map(T::cast);
         let integral = self.has_telemetry.then(|| self.rig.integral());
         let rig::Output { command, mode, fault, .. } = *self.rig.step(measured, request, phase);
-        Decision {
-            command: command.cast(),
-            body_rate: self.gives_rates.then(|| self.rig.rate_setpoint(measured.body_rate()).body_rate.map(T::cast)),
-            zeta: zeta.map(T::cast),
-            mode,
-            fault,
-            margins: self.rig.margins().map(Margins::cast),
-            telemetry: integral.and_then(|integral| self.telemetry(integral, &state)),
+        self.decision.command = command.cast();
+        (self.decision.mode, self.decision.fault) = (mode, fault);
+        self.decision.body_rate =
+            self.gives_rates.then(|| self.rig.rate_setpoint(measured.body_rate()).body_rate.map(T::cast));
+        self.decision.margins = self.rig.margins().map(Margins::cast);
+        if let Some(integral) = integral {
+            self.decision.telemetry = self.telemetry(integral, &state);
         }
+        &self.decision
     }
 
     /// The last step's, on `state`, with ξ̃ as it was before.
@@ -233,7 +250,7 @@ impl<T: Real, A: Actuation<T>> Answers for Pilot<T, A> {
     }
 
     #[inline]
-    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
         Some(self.decide(read, request, t_s))
     }
 }

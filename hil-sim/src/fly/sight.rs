@@ -26,6 +26,8 @@ pub struct Sight {
     rotors: RotorModel,
     mocap: Option<(f64, f64)>,
     estimate: Option<Estimate<f32>>,
+    /// What was seen last.
+    reading: Reading,
     /// The rod has been known since it was last lost.
     has_found: bool,
     specific_force: Vector3<f64>,
@@ -142,6 +144,7 @@ impl Sight {
             rotors: RotorModel::new(scenario, hover),
             mocap: sensors.mocap.map(|mocap| (mocap.noise * TRUST, mocap.attitude_noise * TRUST)),
             estimate: None,
+            reading: (*state).into(),
             has_found: false,
             specific_force: Vector3::zeros(),
         })
@@ -149,7 +152,7 @@ impl Sight {
 
     /// What is seen of `world` at the end of a period under `command`: the payload filter's state,
     /// once it is known, and the UAV by navigation.
-    pub fn see(&mut self, world: &World, command: &Command<f64>) -> Reading {
+    pub fn see(&mut self, world: &World, command: &Command<f64>) -> &mut Reading {
         let readings = self.instruments.read(world);
         self.specific_force = readings.imu.specific_force;
         let modelled = self.rotors.pass(command.thrust);
@@ -172,16 +175,17 @@ impl Sight {
             self.capture(pose);
         }
         self.has_found = is_known(estimate.health.validity, self.has_found);
-        self.estimate = Some(estimate);
         let Motion { position, velocity, attitude, body_rate, specific_force } = motion;
         let uav = Uav { position, velocity, attitude, body_rate };
-        Reading {
+        self.estimate = Some(estimate);
+        self.reading = Reading {
             comes: true,
             state: estimate.state.cast(),
             sees_load: self.has_found,
             uav: Some(estimate.beside(&uav).cast()),
             specific_force: Some(specific_force.map(f64::from)),
-        }
+        };
+        &mut self.reading
     }
 
     fn capture(&mut self, pose: &PoseReading) {

@@ -49,9 +49,6 @@ impl<'a> Twinned<'a> {
     fn ask(&mut self, asked: Asked) {
         if self.twin.is_some() {
             self.asked.push(asked);
-            if self.asked.len() == BLOCK {
-                self.answer();
-            }
         }
     }
 
@@ -64,7 +61,7 @@ impl<'a> Twinned<'a> {
                 Asked::TakeOver(state, applied) => twin.take_over(&state, &applied),
                 Asked::SpeedFactor(factor) => twin.set_speed_factor(factor),
                 Asked::Step(read, request, t_s, decision) => {
-                    self.deviations.push(&decision, &twin.decide(&read, request, t_s));
+                    self.deviations.push(&decision, twin.decide(&read, request, t_s));
                 }
             }
         }
@@ -96,9 +93,14 @@ impl Answers for Twinned<'_> {
         self.pilot.lands()
     }
 
-    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
+        if self.asked.len() >= BLOCK {
+            self.answer();
+        }
         let decision = self.pilot.step(read, request, t_s)?;
-        self.ask(Asked::Step(*read, request, t_s, decision));
+        if self.twin.is_some() {
+            self.asked.push(Asked::Step(*read, request, t_s, *decision));
+        }
         Some(decision)
     }
 }

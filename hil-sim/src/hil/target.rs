@@ -53,6 +53,8 @@ pub struct Target {
     /// When the last command came to a flight that a station commands.
     heard: Instant,
     failure: Option<HilError>,
+    /// The last answer.
+    decision: Option<Decision>,
 }
 
 impl Target {
@@ -100,6 +102,7 @@ impl Target {
             epoch: Instant::now(),
             heard: Instant::now(),
             failure: None,
+            decision: None,
         };
         let begun = Instant::now();
         match target.parameter("LINK_DIALECT") {
@@ -219,7 +222,7 @@ impl Target {
         }
         self.request = request;
         let decision = match self.line.options().pace {
-            _ if self.is_down => return Ok(down()),
+            _ if self.is_down => return Ok(Decision::off()),
             Pace::Lockstep => self.lockstep(measured, t_s),
             Pace::RealTime => self.real_time(measured, t_s),
         }?;
@@ -510,7 +513,7 @@ impl Target {
         if self.heard.elapsed() > self.line.options().patience {
             return Err(self.line.lost(self.heard, 1));
         }
-        self.command.clone().map_or_else(|| Ok(down()), |command| self.decide(&command, None))
+        self.command.clone().map_or_else(|| Ok(Decision::off()), |command| self.decide(&command, None))
     }
 
     /// What a command says, once it is found to be one.
@@ -526,7 +529,7 @@ impl Target {
                 self.begin = Begin::Standing;
             }
             self.line.statistics.cycles.push(command.cycles);
-            return Ok(down());
+            return Ok(Decision::off());
         }
         if command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE)
             || command.faults.contains(LoadFault::LOAD_FAULT_NOT_ARMED)
@@ -577,19 +580,6 @@ impl Target {
     }
 }
 
-/// Rotors off, on the ground.
-fn down() -> Decision {
-    Decision {
-        command: Command::zero(),
-        body_rate: None,
-        zeta: [0.0; 4],
-        mode: Mode::Off,
-        fault: None,
-        margins: None,
-        telemetry: None,
-    }
-}
-
 impl Answers for Target {
     fn start(&mut self, _: &State<f64>, zeta: [f64; 4]) {
         self.begin = Begin::On(zeta);
@@ -607,12 +597,17 @@ impl Answers for Target {
         self.line.station.is_some()
     }
 
-    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<Decision> {
+    fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
         let Reading { comes, state, sees_load, uav, specific_force } = read;
         let all = Measured { state: sees_load.then_some(state), uav: uav.as_ref(), specific_force: *specific_force };
         let measured = if *comes { all } else { None.into() };
-        let answer = self.fly(&measured, request, t_s);
-        answer.map_err(|error| self.failure = Some(error)).ok()
+        match self.fly(&measured, request, t_s) {
+            Ok(decision) => Some(self.decision.insert(decision)),
+            Err(error) => {
+                self.failure = Some(error);
+                None
+            }
+        }
     }
 }
 

@@ -90,18 +90,13 @@ impl Axis {
         let q12 = variance * (0.25 - kept * (0.25 + 0.5 * ratio));
         let q22 = variance * (0.25 - kept * (0.25 + 0.5 * ratio + 0.5 * ratio * ratio));
         let mut axis = Self { x: [0.0; 2], decay, ratio, noise: cholesky(q11, q12, q22), output };
-        axis.x = axis.draw(&cholesky(0.5 * variance, 0.25 * variance, 0.25 * variance), stream);
+        axis.x = drawn(&cholesky(0.5 * variance, 0.25 * variance, 0.25 * variance), stream.normals_of());
         axis
     }
 
     #[inline]
-    fn draw(&self, [a, b, c]: &[f64; 3], stream: &mut Stream) -> [f64; 2] {
-        let (n1, n2) = (stream.normal(), stream.normal());
-        [a * n1, b * n1 + c * n2]
-    }
-
-    fn step(&mut self, stream: &mut Stream) -> f64 {
-        let [n1, n2] = self.draw(&self.noise, stream);
+    fn step(&mut self, normals: [f64; 2]) -> f64 {
+        let [n1, n2] = drawn(&self.noise, normals);
         let [x1, x2] = self.x;
         self.x = [self.decay * x1 + n1, self.decay * (x2 + self.ratio * x1) + n2];
         self.value()
@@ -110,6 +105,12 @@ impl Axis {
     fn value(&self) -> f64 {
         self.output[0] * self.x[0] + self.output[1] * self.x[1]
     }
+}
+
+/// What a covariance's lower factor makes of standard `normals`.
+#[inline]
+fn drawn([a, b, c]: &[f64; 3], [n1, n2]: [f64; 2]) -> [f64; 2] {
+    [a * n1, b * n1 + c * n2]
 }
 
 /// The lower factor of a covariance; a variance that rounding made negative counts as zero.
@@ -153,7 +154,9 @@ impl Dryden {
 
     /// The gust over the coming period, m/s in N.
     pub fn step(&mut self) -> Vector3<f64> {
-        let [u, v, w] = self.axes.each_mut().map(|axis| axis.step(&mut self.stream));
+        let [u1, u2, v1, v2, w1, w2] = self.stream.normals_of();
+        let [of_u, of_v, of_w] = &mut self.axes;
+        let (u, v, w) = (of_u.step([u1, u2]), of_v.step([v1, v2]), of_w.step([w1, w2]));
         let [x, y] = self.along;
         Vector3::new(x * u - y * v, y * u + x * v, w)
     }

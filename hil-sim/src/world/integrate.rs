@@ -4,17 +4,44 @@
 /// One step of the classical Runge-Kutta method, order 4, from `x` at time `t` over `step` seconds.
 #[inline]
 pub fn rk4_step<const N: usize>(f: impl Fn(f64, &[f64; N]) -> [f64; N], t: f64, x: &[f64; N], step: f64) -> [f64; N] {
+    let rates = rk4_rates(f, t, x, step);
+    rk4_end(x, &rates, step)
+}
+
+/// The rates at the four stages of such a step.
+#[inline]
+pub fn rk4_rates<const N: usize>(
+    f: impl Fn(f64, &[f64; N]) -> [f64; N],
+    t: f64,
+    x: &[f64; N],
+    step: f64,
+) -> [[f64; N]; 4] {
     let half = 0.5 * step;
     let k1 = f(t, x);
     let k2 = f(t + half, &advance(x, &k1, half));
     let k3 = f(t + half, &advance(x, &k2, half));
     let k4 = f(t + step, &advance(x, &k3, step));
-    std::array::from_fn(|i| x[i] + step / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
+    [k1, k2, k3, k4]
+}
+
+/// Where such a step from `x` ends.
+#[inline]
+pub fn rk4_end<const N: usize>(x: &[f64; N], [k1, k2, k3, k4]: &[[f64; N]; 4], step: f64) -> [f64; N] {
+    let sixth = step / 6.0;
+    let mut end = *x;
+    for (i, end) in end.iter_mut().enumerate() {
+        *end += sixth * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    }
+    end
 }
 
 #[inline]
 fn advance<const N: usize>(x: &[f64; N], rate: &[f64; N], step: f64) -> [f64; N] {
-    std::array::from_fn(|i| x[i] + step * rate[i])
+    let mut end = *x;
+    for (end, rate) in end.iter_mut().zip(rate) {
+        *end += step * rate;
+    }
+    end
 }
 
 /// `substeps` equal steps of [`rk4_step`] from `t` over `period` seconds: one control period, when

@@ -141,6 +141,8 @@ pub struct World {
     body: Body,
     actuators: ActuatorModel,
     sensors: SensorModel,
+    /// What they made of the body last.
+    reading: Reading,
     gusts: Option<Dryden>,
     /// Velocity of the air in N over the running period, m/s.
     air: Vector3<f64>,
@@ -172,6 +174,7 @@ impl World {
         Self {
             actuators: ActuatorModel::new(spec.actuators, command),
             sensors: SensorModel::new(spec.sensors, spec.period, &body.state(), seed.stream(Purpose::Sensor)),
+            reading: body.state().into(),
             gusts: gusts.map(|gusts| Dryden::new(&gusts, &wind, spec.period, seed.stream(Purpose::Gust))),
             air: wind,
             drag: air.map_or([0.0; 2], |air| {
@@ -206,14 +209,14 @@ impl World {
 
     /// What the sensors make of the body, in `state` now. Once a period.
     #[inline]
-    pub fn read(&mut self, state: &State<f64>) -> Reading {
-        let state = self.sensors.read(self.t_s, state);
+    pub fn read(&mut self, state: &State<f64>) -> &mut Reading {
+        self.sensors.read(self.t_s, state, &mut self.reading.state);
         let Sensors { uav, accelerometer, .. } = self.spec.sensors;
         // On a rod, the state says it all.
         let apart = matches!(self.body, Body::Cable(_));
         let uav = uav.unwrap_or(apart).then(|| {
             let Bodies { uav_position, uav_velocity, .. } = self.body.bodies();
-            self.sensors.read_uav(self.t_s, [&uav_position, &uav_velocity], &state)
+            self.sensors.read_uav(self.t_s, [&uav_position, &uav_velocity], &self.reading.state)
         });
         let specific_force = accelerometer.unwrap_or(apart).then(|| {
             let mut acceleration = self.rates().uav;
@@ -221,7 +224,9 @@ impl World {
             let attitude = self.body.bodies().attitude;
             self.sensors.read_force(self.t_s, &attitude.tr_mul(&acceleration))
         });
-        Reading { comes: true, state, sees_load: true, uav, specific_force }
+        (self.reading.comes, self.reading.sees_load) = (true, true);
+        (self.reading.uav, self.reading.specific_force) = (uav, specific_force);
+        &mut self.reading
     }
 
     /// Whether no state comes to the controller in this period. Once a period, after the first.
@@ -277,9 +282,11 @@ impl World {
         let loads = self.loads();
         let share = piece / self.spec.period * f64::from(self.spec.substeps);
         let resolved = piece / self.body.largest_step();
-        let steps = (share.max(resolved) - 1e-6).ceil().max(1.0);
-        let step = piece / steps;
-        for index in 0..steps as u32 {
+        let least = share.max(resolved) - 1e-6;
+        let whole = least as u32;
+        let steps = whole + u32::from(least > f64::from(whole) || whole == 0);
+        let step = piece / f64::from(steps);
+        for index in 0..steps {
             let start = step * f64::from(index);
             let (actuators, t_s) = (&self.actuators, self.t_s);
             self.body.advance(step, |t| actuators.at(t_s, start + t), &loads);

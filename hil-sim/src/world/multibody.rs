@@ -23,7 +23,7 @@
 
 use controller::{Command, Matrix3, State, Vector3};
 
-use crate::world::integrate::rk4_step;
+use crate::world::integrate::{rk4_end, rk4_rates};
 use witness::plant::VehicleParameters;
 
 /// Forces and torque from outside: neither gravity nor the rotors'.
@@ -56,14 +56,22 @@ pub struct Acceleration {
     pub body: Vector3<f64>,
 }
 
-/// Position p, velocity v, rod q, rod rate q̇, attitude quaternion, body rate ω.
-const COORDINATES: usize = 19;
+/// All but the position, which nothing depends on: attitude quaternion, velocity v, body rate ω,
+/// rod q, rod rate q̇.
+type Coordinates = [f64; 16];
+const ATTITUDE: std::ops::Range<usize> = 0..4;
+const VELOCITY: usize = 4;
+const BODY_RATE: usize = 7;
+const ROD: usize = 10;
+const ROD_RATE: usize = 13;
 
 /// A moving slung-load system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multibody {
     vehicle: VehicleParameters,
-    x: [f64; COORDINATES],
+    /// Of the payload in N, m.
+    position: Vector3<f64>,
+    x: Coordinates,
 }
 
 impl Multibody {
@@ -71,15 +79,12 @@ impl Multibody {
     /// rounding.
     #[must_use]
     pub fn new(vehicle: VehicleParameters, state: &State<f64>) -> Self {
-        let mut x = [0.0; COORDINATES];
-        x[..3].copy_from_slice(state.position.as_slice());
-        x[3..6].copy_from_slice(state.velocity.as_slice());
-        x[6..9].copy_from_slice(state.rod.as_slice());
-        x[9..12].copy_from_slice(state.rod_rate.as_slice());
-        x[12..16].copy_from_slice(&quaternion(&state.attitude));
-        x[16..].copy_from_slice(state.body_rate.as_slice());
+        let mut x = coordinates(
+            quaternion(&state.attitude),
+            [&state.velocity, &state.body_rate, &state.rod, &state.rod_rate],
+        );
         project(&mut x);
-        Self { vehicle, x }
+        Self { vehicle, position: state.position, x }
     }
 
     /// The vehicle that moves.
@@ -99,37 +104,37 @@ impl Multibody {
     pub fn state(&self) -> State<f64> {
         let x = &self.x;
         State {
-            position: vector(x, 0),
-            velocity: vector(x, 3),
-            rod: vector(x, 6),
-            rod_rate: vector(x, 9),
-            attitude: rotation([x[12], x[13], x[14], x[15]]),
-            body_rate: vector(x, 16),
+            position: self.position,
+            velocity: vector(x, VELOCITY),
+            rod: vector(x, ROD),
+            rod_rate: vector(x, ROD_RATE),
+            attitude: rotation(attitude(x)),
+            body_rate: vector(x, BODY_RATE),
         }
     }
 
     /// Position of the payload in N, m.
     #[must_use]
     pub fn position(&self) -> Vector3<f64> {
-        vector(&self.x, 0)
+        self.position
     }
 
     /// Velocity of the UAV in N, m/s: v − L q̇.
     #[must_use]
     pub fn uav_velocity(&self) -> Vector3<f64> {
-        vector(&self.x, 3) - vector(&self.x, 9) * self.vehicle.rod_length
+        vector(&self.x, VELOCITY) - vector(&self.x, ROD_RATE) * self.vehicle.rod_length
     }
 
     /// Position of the UAV in N, m: p − L q.
     #[must_use]
     pub fn uav_position(&self) -> Vector3<f64> {
-        vector(&self.x, 0) - vector(&self.x, 6) * self.vehicle.rod_length
+        self.position - vector(&self.x, ROD) * self.vehicle.rod_length
     }
 
     /// Accelerations now, under `command` and `loads`.
     #[must_use]
     pub fn acceleration(&self, command: &Command<f64>, loads: &Loads) -> Acceleration {
-        acceleration(&self.vehicle, &self.x, command, loads)
+        Inertias::of(&self.vehicle).acceleration(&self.x, command, loads)
     }
 
     /// One Runge-Kutta step over `step` seconds, then the projection. `command` gives thrust and
@@ -142,21 +147,21 @@ impl Multibody {
         command: impl Fn(f64) -> Command<f64>,
         loads: impl Fn(&Vector3<f64>, &Vector3<f64>) -> Loads,
     ) {
-        let vehicle = &self.vehicle;
+        let inertias = Inertias::of(&self.vehicle);
         // The two stages in the middle share theirs.
         let acting = [0.0, 0.5 * step, step].map(command);
-        let derivative = |t: f64, x: &[f64; COORDINATES]| {
-            let (v, w) = (vector(x, 3), vector(x, 9));
-            let loads = loads(&v, &(v - w * vehicle.rod_length));
+        let derivative = |t: f64, x: &Coordinates| {
+            let (v, w) = (vector(x, VELOCITY), vector(x, ROD_RATE));
+            let loads = loads(&v, &(v - w * inertias.rod_length));
             let stage = usize::from(t > 0.0) + usize::from(t == step);
-            let Acceleration { payload, rod, body } = acceleration(vehicle, x, &acting[stage], &loads);
-            let turn = quaternion_rate([x[12], x[13], x[14], x[15]], &vector(x, 16));
-            [
-                v.x, v.y, v.z, payload.x, payload.y, payload.z, w.x, w.y, w.z, rod.x, rod.y, rod.z, turn[0], turn[1],
-                turn[2], turn[3], body.x, body.y, body.z,
-            ]
+            let Acceleration { payload, rod, body } = inertias.acceleration(x, &acting[stage], &loads);
+            coordinates(quaternion_rate(attitude(x), &vector(x, BODY_RATE)), [&payload, &body, &w, &rod])
         };
-        self.x = rk4_step(derivative, 0.0, &self.x, step);
+        let rates = rk4_rates(derivative, 0.0, &self.x, step);
+        // Its own rates are the velocities of the stages, each from the one before.
+        let [a1, a2, a3] = [0, 1, 2].map(|stage| vector(&rates[stage], VELOCITY));
+        self.position += (vector(&self.x, VELOCITY) + (a1 + a2 + a3) * (step / 6.0)) * step;
+        self.x = rk4_end(&self.x, &rates, step);
         project(&mut self.x);
     }
 
@@ -164,10 +169,10 @@ impl Multibody {
     #[must_use]
     pub fn energy(&self) -> f64 {
         let VehicleParameters { payload_mass, uav_mass, inertia, gravity, .. } = self.vehicle;
-        let spin: f64 = inertia.iter().zip(&self.x[16..]).map(|(j, o)| j * o * o).sum();
-        let payload = square(&vector(&self.x, 3)) * payload_mass;
+        let spin: f64 = inertia.iter().zip(&vector(&self.x, BODY_RATE)).map(|(j, o)| j * o * o).sum();
+        let payload = square(&vector(&self.x, VELOCITY)) * payload_mass;
         let uav = square(&self.uav_velocity()) * uav_mass;
-        let down = self.x[2] * payload_mass + self.uav_position().z * uav_mass;
+        let down = self.position.z * payload_mass + self.uav_position().z * uav_mass;
         0.5 * (payload + uav + spin) - down * gravity
     }
 
@@ -175,7 +180,10 @@ impl Multibody {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         // Nothing but an infinity and a NaN makes something of zero.
-        self.x.iter().map(|value| 0.0 * value).sum::<f64>() == 0.0
+        let nothing = |values: &[f64]| values.iter().map(|value| 0.0 * value).sum::<f64>();
+        let (left, right) = self.x.split_at(self.x.len() / 2);
+        let pairs: [f64; 8] = std::array::from_fn(|i| left[i] * 0.0 + right[i] * 0.0);
+        nothing(&pairs) + nothing(self.position.as_slice()) == 0.0
     }
 }
 
@@ -191,44 +199,81 @@ pub(super) fn square(v: &Vector3<f64>) -> f64 {
     v.dot(v)
 }
 
+/// Quaternion and four vectors in their order.
 #[inline]
-fn acceleration(
-    vehicle: &VehicleParameters,
-    x: &[f64; COORDINATES],
-    command: &Command<f64>,
-    loads: &Loads,
-) -> Acceleration {
-    let VehicleParameters { payload_mass, uav_mass, rod_length, inertia: [j1, j2, j3], gravity } = *vehicle;
-    let (q, w, omega) = (vector(x, 6), vector(x, 9), vector(x, 16));
-    let [q0, q1, q2, q3] = [x[12], x[13], x[14], x[15]];
-    let b3 =
-        Vector3::new(2.0 * (q1 * q3 + q0 * q2), 2.0 * (q2 * q3 - q0 * q1), q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3);
-    // What acts on the UAV but for gravity and rod.
-    let uav = loads.uav_force - b3 * command.thrust;
-    let apart = (loads.payload_force / payload_mass - uav / uav_mass) / rod_length;
-    let rod = apart - q * (q.dot(&apart) + square(&w));
-    let mut payload = (loads.payload_force + uav + rod * (uav_mass * rod_length)) / (payload_mass + uav_mass);
-    payload.z += gravity;
-    let torque = command.torque + loads.torque;
-    let body = Vector3::new(
-        (torque.x + (j2 - j3) * omega.y * omega.z) / j1,
-        (torque.y + (j3 - j1) * omega.z * omega.x) / j2,
-        (torque.z + (j1 - j2) * omega.x * omega.y) / j3,
-    );
-    Acceleration { payload, rod, body }
+fn coordinates([q0, q1, q2, q3]: [f64; 4], [v, omega, q, w]: [&Vector3<f64>; 4]) -> Coordinates {
+    [q0, q1, q2, q3, v.x, v.y, v.z, omega.x, omega.y, omega.z, q.x, q.y, q.z, w.x, w.y, w.z]
+}
+
+#[inline]
+fn attitude(x: &Coordinates) -> [f64; 4] {
+    [x[0], x[1], x[2], x[3]]
+}
+
+/// What a vehicle's numbers make of forces and torques.
+struct Inertias {
+    rod_length: f64,
+    gravity: f64,
+    /// 1/(m_L L) and 1/(m_Q L), 1/(kg·m).
+    per_payload: f64,
+    per_uav: f64,
+    /// 1/M, 1/kg, and m_Q L/M, m.
+    per_total: f64,
+    lever: f64,
+    /// Of each axis 1/J, 1/(kg·m²), and what (J ω × ω)/J has of the product of the other two rates.
+    per_inertia: Vector3<f64>,
+    gyroscopic: Vector3<f64>,
+}
+
+impl Inertias {
+    #[inline]
+    fn of(vehicle: &VehicleParameters) -> Self {
+        let VehicleParameters { payload_mass, uav_mass, rod_length, inertia: [j1, j2, j3], gravity } = *vehicle;
+        let per_total = 1.0 / (payload_mass + uav_mass);
+        let per_inertia = Vector3::new(1.0 / j1, 1.0 / j2, 1.0 / j3);
+        Self {
+            rod_length,
+            gravity,
+            per_payload: 1.0 / (payload_mass * rod_length),
+            per_uav: 1.0 / (uav_mass * rod_length),
+            per_total,
+            lever: uav_mass * rod_length * per_total,
+            per_inertia,
+            gyroscopic: Vector3::new(j2 - j3, j3 - j1, j1 - j2).component_mul(&per_inertia),
+        }
+    }
+
+    #[inline]
+    fn acceleration(&self, x: &Coordinates, command: &Command<f64>, loads: &Loads) -> Acceleration {
+        let (q, w, omega) = (vector(x, ROD), vector(x, ROD_RATE), vector(x, BODY_RATE));
+        let [q0, q1, q2, q3] = attitude(x);
+        let b3 =
+            Vector3::new(2.0 * (q1 * q3 + q0 * q2), 2.0 * (q2 * q3 - q0 * q1), q0 * q0 - q1 * q1 - q2 * q2 + q3 * q3);
+        // What acts on the UAV but for gravity and rod.
+        let uav = loads.uav_force - b3 * command.thrust;
+        let apart = loads.payload_force * self.per_payload - uav * self.per_uav;
+        let rod = apart - q * (q.dot(&apart) + square(&w));
+        let mut payload = (loads.payload_force + uav) * self.per_total + rod * self.lever;
+        payload.z += self.gravity;
+        let torque = command.torque + loads.torque;
+        let products = Vector3::new(omega.y * omega.z, omega.z * omega.x, omega.x * omega.y);
+        let body = torque.component_mul(&self.per_inertia) + products.component_mul(&self.gyroscopic);
+        Acceleration { payload, rod, body }
+    }
 }
 
 /// Back to |q| = 1, q̇ ⊥ q and a unit quaternion.
 #[inline]
-fn project(x: &mut [f64; COORDINATES]) {
-    let q = vector(x, 6);
-    let q = q / square(&q).sqrt();
-    let w = vector(x, 9);
+fn project(x: &mut Coordinates) {
+    let q = vector(x, ROD);
+    let q = q * (1.0 / square(&q).sqrt());
+    let w = vector(x, ROD_RATE);
     let w = w - q * q.dot(&w);
-    x[6..9].copy_from_slice(q.as_slice());
-    x[9..12].copy_from_slice(w.as_slice());
-    let per_norm = 1.0 / (x[12] * x[12] + x[13] * x[13] + x[14] * x[14] + x[15] * x[15]).sqrt();
-    for part in &mut x[12..16] {
+    let [q0, q1, q2, q3] = attitude(x);
+    let per_norm = 1.0 / (q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3).sqrt();
+    x[ROD..ROD + 3].copy_from_slice(q.as_slice());
+    x[ROD_RATE..].copy_from_slice(w.as_slice());
+    for part in &mut x[ATTITUDE] {
         *part *= per_norm;
     }
 }

@@ -87,21 +87,41 @@ impl Stream {
     }
 
     /// Standard normal.
-    #[inline]
     pub fn normal(&mut self) -> f64 {
-        let layers = self.layers;
         loop {
-            let bits = self.source.next_u64();
-            // The layer from the lowest bits, the place in it from the 53 highest.
-            let layer = (bits & 0xff) as usize;
-            let x = (bits.cast_signed() >> 11) as f64 * layers.step[layer];
-            if x.abs() < layers.width[layer + 1] {
+            let (layer, x, is_below) = self.layers.place(self.source.next_u64());
+            if is_below {
                 return x;
             }
             if let Some(x) = self.beside(layer, x) {
                 return x;
             }
         }
+    }
+
+    /// `N` independent standard normals: the same as one by one.
+    #[inline]
+    pub fn normals_of<const N: usize>(&mut self) -> [f64; N] {
+        // Mostly all lie below the layers above: the source then stays in registers.
+        let mut source = self.source.clone();
+        let mut all = [0.0; N];
+        let mut are_below = true;
+        for normal in &mut all {
+            let (_, x, is_below) = self.layers.place(source.next_u64());
+            *normal = x;
+            are_below &= is_below;
+        }
+        if are_below {
+            self.source = source;
+            return all;
+        }
+        self.one_by_one()
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn one_by_one<const N: usize>(&mut self) -> [f64; N] {
+        std::array::from_fn(|_| self.normal())
     }
 
     /// What becomes of an `x` in its layer, but not below the layer above: one of 80.
@@ -128,7 +148,8 @@ impl Stream {
     /// Three independent standard normals.
     #[inline]
     pub fn normals(&mut self) -> Vector3<f64> {
-        Vector3::new(self.normal(), self.normal(), self.normal())
+        let [x, y, z] = self.normals_of();
+        Vector3::new(x, y, z)
     }
 }
 
@@ -155,6 +176,15 @@ struct Ziggurat {
 }
 
 impl Ziggurat {
+    /// The layer from the lowest bits, the place in it from the 53 highest, and whether that is
+    /// below the layer above.
+    #[inline]
+    fn place(&self, bits: u64) -> (usize, f64, bool) {
+        let layer = (bits & 0xff) as usize;
+        let x = (bits.cast_signed() >> 11) as f64 * self.step[layer];
+        (layer, x, x.abs() < self.width[layer + 1])
+    }
+
     fn shared() -> &'static Self {
         static SHARED: LazyLock<Ziggurat> = LazyLock::new(Ziggurat::new);
         &SHARED

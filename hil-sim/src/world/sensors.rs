@@ -159,9 +159,17 @@ impl Channel {
         *self == Self::default()
     }
 
+    /// Whether nothing but bias and noise comes between a value and its reading.
+    fn is_plain(&self) -> bool {
+        let Self { noise, bias, .. } = *self;
+        *self == Self { noise, bias, ..Self::default() }
+    }
+
     /// The error of this sample, in the channel's unit.
+    #[inline]
     fn error(&self, stream: &mut Stream) -> Vector3<f64> {
-        let bias = Vector3::from(self.bias);
+        let [x, y, z] = self.bias;
+        let bias = Vector3::new(x, y, z);
         if self.noise > 0.0 { bias + stream.normals() * self.noise } else { bias }
     }
 
@@ -258,6 +266,8 @@ pub struct SensorModel {
     before: State<f64>,
     last: State<f64>,
     perfect: bool,
+    /// Whether all channels of the state are plain: then nothing is asked of them, or of the past.
+    plain: bool,
     /// Of the UAV's own position, velocity and specific force.
     own: [Memory; 3],
 }
@@ -281,15 +291,39 @@ impl SensorModel {
     /// `sensors` sampled every `period` s, from a flight that starts at `state`.
     #[must_use]
     pub fn new(sensors: Sensors, period: f64, state: &State<f64>, stream: Stream) -> Self {
-        let perfect = sensors.channels().iter().take(6).all(|(_, channel)| channel.is_off());
-        Self { sensors, period, stream, before: *state, last: *state, perfect, own: [Memory::default(); 3] }
+        let all = |is: fn(&Channel) -> bool| sensors.channels().iter().take(6).all(|(_, channel)| is(channel));
+        let (perfect, plain) = (all(Channel::is_off), all(Channel::is_plain));
+        Self { sensors, period, stream, before: *state, last: *state, perfect, plain, own: [Memory::default(); 3] }
     }
 
-    /// What is read of `state` at `t_s`.
-    pub fn read(&mut self, t_s: f64, state: &State<f64>) -> State<f64> {
+    /// What is read of `state` at `t_s`, into `read`.
+    #[inline]
+    pub fn read(&mut self, t_s: f64, state: &State<f64>, read: &mut State<f64>) {
         if self.perfect {
-            return *state;
+            *read = *state;
+        } else if self.plain {
+            self.read_plain(state, read);
+        } else {
+            *read = self.read_wronged(t_s, state);
         }
+    }
+
+    /// With bias and noise alone.
+    fn read_plain(&mut self, state: &State<f64>, read: &mut State<f64>) {
+        let Self { sensors, stream, .. } = self;
+        let turned = state.rod + sensors.rod.error(stream).cross(&state.rod);
+        let rod = turned * (1.0 / turned.dot(&turned).sqrt());
+        read.rod = rod;
+        read.attitude = orthonormal(&turn(&state.attitude, &sensors.attitude.error(stream)));
+        read.position = state.position + sensors.position.error(stream);
+        read.velocity = state.velocity + sensors.velocity.error(stream);
+        let rate = state.rod_rate + sensors.rod_rate.error(stream);
+        read.rod_rate = rate - rod * rod.dot(&rate);
+        read.body_rate = state.body_rate + sensors.body_rate.error(stream);
+    }
+
+    /// With all that can go wrong.
+    fn read_wronged(&mut self, t_s: f64, state: &State<f64>) -> State<f64> {
         let Self { sensors, period, stream, before, last, .. } = self;
         let mut sample = Sample { t_s, period: *period, stream };
         let rod = {
@@ -305,7 +339,7 @@ impl SensorModel {
                 Some(age) => state.attitude + (before.attitude - state.attitude) * age,
                 None => state.attitude,
             };
-            let turned = orthonormal(&(aged * turn(&channel.error(sample.stream))));
+            let turned = orthonormal(&turn(&aged, &channel.error(sample.stream)));
             let fault = channel.fault(t_s);
             let column = |i| channel.reading(fault, turned.column(i).into(), &last.attitude.column(i).into());
             Matrix3::from_columns(&[column(0), column(1), column(2)])
@@ -371,19 +405,24 @@ impl Sample<'_> {
     }
 }
 
-/// 1 + v^: orthonormal to |v|².
-fn turn(v: &Vector3<f64>) -> Matrix3<f64> {
-    Matrix3::new(1.0, -v.z, v.y, v.z, 1.0, -v.x, -v.y, v.x, 1.0)
+/// R (1 + v^): orthonormal to |v|².
+#[inline]
+fn turn(r: &Matrix3<f64>, v: &Vector3<f64>) -> Matrix3<f64> {
+    let b1 = Vector3::new(r.m11, r.m21, r.m31);
+    let b2 = Vector3::new(r.m12, r.m22, r.m32);
+    let b3 = Vector3::new(r.m13, r.m23, r.m33);
+    Matrix3::from_columns(&[b1 + b2 * v.z - b3 * v.y, b2 + b3 * v.x - b1 * v.z, b3 + b1 * v.y - b2 * v.x])
 }
 
 /// The columns made orthonormal, the first two alike (Gram and Schmidt prefer one), the third their
 /// product.
+#[inline]
 fn orthonormal(r: &Matrix3<f64>) -> Matrix3<f64> {
-    let unit = |v: Vector3<f64>| v / v.dot(&v).sqrt();
-    let (c1, c2): (Vector3<f64>, Vector3<f64>) = (unit(r.column(0).into()), unit(r.column(1).into()));
-    let (sum, difference) = (unit(c1 + c2), unit(c1 - c2));
-    let half = 0.5_f64.sqrt();
-    let (c1, c2) = ((sum + difference) * half, (sum - difference) * half);
+    let of_length = |v: Vector3<f64>, length: f64| v * (length / v.dot(&v).sqrt());
+    let (c1, c2) = (of_length(r.column(0).into(), 1.0), of_length(r.column(1).into(), 1.0));
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let (sum, difference) = (of_length(c1 + c2, half), of_length(c1 - c2, half));
+    let (c1, c2) = (sum + difference, sum - difference);
     Matrix3::from_columns(&[c1, c2, c1.cross(&c2)])
 }
 
@@ -391,6 +430,12 @@ fn orthonormal(r: &Matrix3<f64>) -> Matrix3<f64> {
 mod tests {
     use super::*;
     use crate::world::random::Purpose;
+
+    fn reading(model: &mut SensorModel, t_s: f64, state: &State<f64>) -> State<f64> {
+        let mut read = *state;
+        model.read(t_s, state, &mut read);
+        read
+    }
 
     fn state() -> State<f64> {
         let mut state = State::at_rest(Vector3::new(1.0, 2.0, -10.0));
@@ -404,7 +449,7 @@ mod tests {
 
     #[test]
     fn without_errors_the_state_is_read() {
-        assert_eq!(model(Sensors::default()).read(0.0, &state()), state());
+        assert_eq!(reading(&mut model(Sensors::default()), 0.0, &state()), state());
     }
 
     #[test]
@@ -414,7 +459,7 @@ mod tests {
         let count = 20_000;
         let mut squares = [0.0; 6];
         for i in 0..count {
-            let read = model.read(0.002 * f64::from(i), &truth);
+            let read = reading(&mut model, 0.002 * f64::from(i), &truth);
             assert!((read.rod.dot(&read.rod) - 1.0).abs() < 1e-15 * 10.0);
             assert!((read.attitude * read.attitude.transpose() - Matrix3::identity()).amax() < 1e-14);
             assert!(read.rod.dot(&read.rod_rate).abs() < 1e-15);
@@ -445,26 +490,29 @@ mod tests {
             Sensors { position: channel, ..Sensors::default() }
         };
         let mut frozen = model(channel(|c, w| c.freeze = w));
-        let first = frozen.read(0.9, &state()).position;
-        assert_eq!(frozen.read(1.0, &state()).position, first);
-        assert_eq!(frozen.read(1.9, &state()).position, first);
-        assert_ne!(frozen.read(2.0, &state()).position, first);
+        let first = reading(&mut frozen, 0.9, &state()).position;
+        assert_eq!(reading(&mut frozen, 1.0, &state()).position, first);
+        assert_eq!(reading(&mut frozen, 1.9, &state()).position, first);
+        assert_ne!(reading(&mut frozen, 2.0, &state()).position, first);
         let mut dropped = model(channel(|c, w| c.drop_out = w));
-        assert_eq!(dropped.read(1.5, &state()).position, Vector3::zeros());
+        assert_eq!(reading(&mut dropped, 1.5, &state()).position, Vector3::zeros());
         let mut nan = model(channel(|c, w| c.nan = w));
-        assert!(nan.read(1.5, &state()).position.x.is_nan() && nan.read(2.5, &state()).position.x.is_finite());
+        assert!(
+            reading(&mut nan, 1.5, &state()).position.x.is_nan()
+                && reading(&mut nan, 2.5, &state()).position.x.is_finite()
+        );
     }
 
     #[test]
     fn readings_are_multiples_of_the_quantum_with_their_bias() {
         let channel = Channel { quantum: 0.25, bias: [0.3, 0.0, 0.0], ..Channel::default() };
-        let read = model(Sensors { velocity: channel, ..Sensors::default() }).read(0.0, &state());
+        let read = reading(&mut model(Sensors { velocity: channel, ..Sensors::default() }), 0.0, &state());
         assert_eq!(read.velocity, Vector3::new(0.75, -0.25, 0.0));
         let channel = Channel { jitter_s: 0.002, ..Channel::default() };
         let mut jittering = model(Sensors { position: channel, ..Sensors::default() });
         let mut later = state();
         later.position.x += 1.0;
-        let x = jittering.read(0.0, &later).position.x;
+        let x = reading(&mut jittering, 0.0, &later).position.x;
         assert!(x > 1.0 && x < 2.0, "between the two samples: {x}");
     }
 }

@@ -199,19 +199,22 @@ pub(super) fn fly_drawn(
             _ => {}
         }
         if let Some(margins) = margins {
-            row.least_q3 = row.least_q3.min(margins.q3);
-            row.least_q_b3 = row.least_q_b3.min(margins.q_b3);
-            row.least_tension = row.least_tension.min(-margins.lambda * controller.vehicle.payload_mass);
+            lower(&mut row.least_q3, margins.q3);
+            lower(&mut row.least_q_b3, margins.q_b3);
+            lower(&mut row.least_tension, -margins.lambda * controller.vehicle.payload_mass);
         }
-        let finite = command.thrust.is_finite() && command.torque.iter().all(|torque| torque.is_finite());
+        let torque = command.torque.abs();
         let within = thrust_range.contains(&command.thrust)
-            && command.torque.iter().zip(max_torque).all(|(torque, limit)| torque.abs() <= limit);
-        row.non_finite += u32::from(!finite);
-        // Off is no command.
-        row.out_of_limits += u32::from(!within && mode != Mode::Off);
-        row.least_thrust = row.least_thrust.min(command.thrust);
-        row.largest_thrust = row.largest_thrust.max(command.thrust);
-        row.largest_torque = row.largest_torque.max(command.torque.amax());
+            && torque.iter().zip(max_torque).all(|(torque, limit)| *torque <= limit);
+        if !within {
+            let finite = command.thrust.is_finite() && torque.iter().all(|torque| torque.is_finite());
+            row.non_finite += u32::from(!finite);
+            // Off is no command.
+            row.out_of_limits += u32::from(mode != Mode::Off);
+        }
+        lower(&mut row.least_thrust, command.thrust);
+        raise(&mut row.largest_thrust, command.thrust);
+        torque.iter().for_each(|torque| raise(&mut row.largest_torque, *torque));
         if let Some(distance) = moment.distance_m {
             if distance < GOOD_M {
                 row.reached_s.get_or_insert(moment.t_s);
@@ -248,6 +251,22 @@ pub(super) fn fly_drawn(
         load_place_m: touchdown.load_place_m,
         ..row
     })
+}
+
+/// The lower of the two; a NaN is none.
+#[inline]
+fn lower(least: &mut f64, value: f64) {
+    if value < *least {
+        *least = value;
+    }
+}
+
+/// The higher of the two; a NaN is none.
+#[inline]
+fn raise(largest: &mut f64, value: f64) {
+    if value > *largest {
+        *largest = value;
+    }
 }
 
 impl Row {

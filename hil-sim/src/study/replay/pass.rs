@@ -165,7 +165,7 @@ impl<'a> Pass<'a> {
             specific_force: uav.and(*specific_force),
         };
         self.pilot.actuation().set(logged);
-        let decision = self.pilot.step(&reading, request, t_s)?;
+        let decision = *self.pilot.step(&reading, request, t_s)?;
         // Not what was applied, but what the law would have.
         let command = self.pilot.actuation().asked().unwrap_or(decision.command);
         Some(Decision { command, ..decision })
