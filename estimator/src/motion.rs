@@ -2,6 +2,8 @@
 
 use model::{Matrix3, Real, Vector3};
 
+use crate::lever::axes;
+
 /// The UAV's motion at a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion<T> {
@@ -28,6 +30,17 @@ impl<T: Real> Motion<T> {
             body_rate: Vector3::zeros(),
             specific_force: Vector3::new(T::zero(), T::zero(), -g),
         }
+    }
+
+    /// Takes over `other`, word by word: of all 84 bytes at once the compiler makes a call that
+    /// costs three times as much.
+    #[inline(always)]
+    pub(crate) fn take_over(&mut self, other: &Self) {
+        self.position = other.position;
+        self.velocity = other.velocity;
+        self.attitude = Matrix3::from_columns(&axes(&other.attitude));
+        self.body_rate = other.body_rate;
+        self.specific_force = other.specific_force;
     }
 
     /// Whether a filter can use it: position within 90 km, velocity within 900 m/s, body rate

@@ -273,7 +273,7 @@ impl<T: Real> Payload<T> {
         let is_next = self.missing == 0;
         let usable = motion.filter(|motion| motion.is_usable());
         if let Some(motion) = usable {
-            self.last = *motion;
+            self.last.take_over(motion);
             self.missing = 0;
         } else {
             self.missing = self.missing.saturating_add(1);
