@@ -48,11 +48,13 @@ impl<T: Real, const N: usize> Scalar<T, N> {
     }
 }
 
-/// What a scalar was: its correction, and how surprising it came.
+/// What a scalar was: K ν is to be added to the state, and how surprising it came.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Absorbed<T, const N: usize> {
-    /// K ν, to be added to the state.
-    pub(crate) correction: [T; N],
+    /// K.
+    pub(crate) gain: [T; N],
+    /// ν, within its bound.
+    pub(crate) innovation: T,
     /// ν²/S: 1 in the mean where the noise is as told.
     pub(crate) surprise: T,
 }
@@ -136,8 +138,7 @@ impl<T: Real, const N: usize, const SIZE: usize> Covariance<T, N, SIZE> {
         }
         let deviation = s.sqrt();
         let bounded = innovation.clamp(-deviation * T::lit(BOUND), deviation * T::lit(BOUND));
-        let scale = bounded * per_s;
-        Absorbed { correction: g.map(|g| g * scale), surprise: innovation * innovation * per_s }
+        Absorbed { gain: g.map(|g| g * per_s), innovation: bounded, surprise: innovation * innovation * per_s }
     }
 
     /// Keeps variances above `least`, which rounding could take to zero.

@@ -472,8 +472,8 @@ impl<T: Real> Navigation<T> {
         let innovation = scalar.innovation - dot(&scalar.h, &self.pending);
         if innovation.is_finite() {
             let absorbed = self.covariance.absorb(&scalar, innovation, None);
-            for (sum, correction) in self.pending.iter_mut().zip(absorbed.correction) {
-                *sum += correction;
+            for (sum, gain) in self.pending.iter_mut().zip(absorbed.gain) {
+                *sum += gain * absorbed.innovation;
             }
         }
         self.row += 1;

@@ -36,7 +36,7 @@ use load::{Innovations, Swing};
 use pendulum::{Pendulum, Pivot, Pull};
 use predict::{Covariance, Spread};
 use state::{ERRORS, index};
-use thrust::{Axis, Linearized, Mean, Window};
+use thrust::{Axis, Batch, Linearized, Mean, Window};
 use track::Track;
 
 /// Periods of a cycle.
@@ -60,6 +60,10 @@ const FASTEST: f64 = 30.0;
 const SEEN: u8 = 17;
 /// Cycles after which what was found with a valid rod is believed without one: 10 s at 500 Hz.
 const PROVEN: u8 = 167;
+/// Cycles for which the rod has to be known before the mass is looked for: 1.2 s at 500 Hz. Until
+/// then a very light load blown far out explains what is measured as well, and a filter that may
+/// choose finds it: on a wide swing its covariance is too small for a moment, and a moment is enough.
+const SURE: u8 = 20;
 /// Standard deviation of an accelerometer that was not read, m/s².
 const UNREAD: f64 = 2.0;
 
@@ -106,15 +110,17 @@ pub struct Payload<T> {
     force: Vector3<T>,
     mean_force: Vector3<T>,
     linearized: Linearized<T>,
+    batch: Batch<T>,
     /// Cycles since the start.
     age: u8,
     /// Whether the mass has been known to 15 % since the start.
     is_mass_found: bool,
+    /// Cycles for which the rod has been known.
+    known: u8,
     health: Health<T>,
     /// Corrections of a batch that is not complete.
     pending: [T; ERRORS],
     watch: CableWatch<T>,
-    surprise: [T; 3],
     load_surprise: [T; 2],
     /// Innovations of the load's rod and rate: being summed up, and being taken in.
     fresh: [Innovations<T>; 2],
@@ -147,8 +153,10 @@ impl<T: Real> Payload<T> {
             force: Vector3::new(T::zero(), T::zero(), params.gravity * T::lit(-3.0)),
             mean_force: Vector3::new(T::zero(), T::zero(), -params.gravity),
             linearized: Linearized::none(),
+            batch: Batch::none(),
             age: 0,
             is_mass_found: false,
+            known: 0,
             health: Health {
                 validity: Validity::Converging,
                 rod_deviation: rod * T::lit(core::f64::consts::SQRT_2),
@@ -157,7 +165,6 @@ impl<T: Real> Payload<T> {
             },
             pending: [T::zero(); ERRORS],
             watch: CableWatch::new(Cable::Taut),
-            surprise: [T::one(); 3],
             load_surprise: [T::one(); 2],
             fresh: [Innovations::none(); 2],
             taken: [Innovations::none(); 2],
@@ -339,11 +346,14 @@ impl<T: Real> Payload<T> {
                 let pivot = &Pivot { specific_force: self.mean_force, ..*pivot };
                 self.linearized = Linearized::about(&self.params, &self.state, pendulum, pivot, velocity);
             }
-            1 => self.take_thrust(attitude, Axis::First),
-            2 => self.take_thrust(attitude, Axis::Second),
-            3 => self.take_thrust(attitude, Axis::Thrust),
-            4 => {
-                self.settle(CYCLE - 2);
+            // Over the window that has ended: what drove the rod in it, the batch then meets.
+            1 => self.spread(pendulum, pivot),
+            2 => self.take_thrust(attitude, Axis::First),
+            3 => self.take_thrust(attitude, Axis::Second),
+            4 => self.take_thrust(attitude, Axis::Thrust),
+            5 => {
+                self.settle(CYCLE - 1);
+                self.known = if thrust::is_rod_known(&self.covariance) { self.known.saturating_add(1) } else { 0 };
                 self.is_mass_found |= self.covariance.get(index::MASS, index::MASS) < T::lit(0.15 * 0.15);
                 if self.is_astray() {
                     self.restart();
@@ -351,7 +361,6 @@ impl<T: Real> Payload<T> {
                 self.health = self.judge();
                 self.age = self.age.saturating_add(1);
             }
-            5 => self.spread(pendulum, pivot),
             6 => {
                 self.taken = self.fresh;
                 self.fresh = [Innovations::none(); 2];
@@ -382,7 +391,7 @@ impl<T: Real> Payload<T> {
     /// What is measured has been far from what was expected for a second: the filter is sure of a
     /// rod that is not there. Less far will do where no mass is small or large enough for it.
     fn is_astray(&self) -> bool {
-        let ([x, y, z], [rod_x, rod_y]) = (self.surprise, self.load_surprise);
+        let ([x, y, z], [rod_x, rod_y]) = (self.health.surprise, self.load_surprise);
         let most = if self.state.is_mass_at_bound() { CONSISTENT } else { ASTRAY };
         self.watch.cable == Cable::Taut && x.max(y).max(z).max(rod_x).max(rod_y) > T::lit(most)
     }
@@ -416,7 +425,8 @@ impl<T: Real> Payload<T> {
         }
         self.age = 0;
         self.is_mass_found = false;
-        self.surprise = [T::one(); 3];
+        self.known = 0;
+        self.health.surprise = [T::one(); 3];
         self.load_surprise = [T::one(); 2];
         self.fresh = [Innovations::none(); 2];
         self.taken = [Innovations::none(); 2];
@@ -428,18 +438,26 @@ impl<T: Real> Payload<T> {
         if !self.mean.is_full || self.watch.cable == Cable::Slack {
             return;
         }
-        let [x, y, z] = &mut self.surprise;
-        let [b1, b2, b3] = axes(attitude);
-        let (mean, body) = match axis {
+        let [x, y, z] = &mut self.health.surprise;
+        let body @ [b1, b2, b3] = axes(attitude);
+        let (mean, body_axis) = match axis {
             Axis::First => (x, b1),
             Axis::Second => (y, b2),
             Axis::Thrust => (z, b3),
         };
         let window = self.params.period * T::lit(f64::from(CYCLE));
         let is_witnessed = self.taken.iter().any(|taken| !taken.is_empty());
-        let (scalar, along) = self.linearized.scalar(&self.params, axis, &body, &self.mean, window, is_witnessed);
-        let is_considered = thrust::is_considered(&self.covariance, axis, along, self.is_mass_found);
-        let surprise = take(&mut self.covariance, &mut self.pending, &scalar, is_considered);
+        let (mut scalar, along) =
+            self.linearized.scalar(&self.params, axis, &body_axis, &self.mean, window, is_witnessed);
+        self.batch.correct(axis, &mut scalar.correlation);
+        // Sure of a mass that was found, the filter is so as long as it knows the rod.
+        let least = if self.is_mass_found { 1 } else { SURE };
+        let is_considered =
+            self.known < least || thrust::is_considered(&self.covariance, axis, along, self.is_mass_found);
+        let (gain, surprise) = take(&mut self.covariance, &mut self.pending, &scalar, is_considered);
+        if !is_witnessed {
+            self.batch.follow(axis, &scalar.h, &gain, |axis| self.linearized.correlation(&self.params, &body[axis]));
+        }
         // Over a second.
         *mean += (surprise.min(T::lit(WILD)) - *mean) * T::lit(0.06);
     }
@@ -448,7 +466,7 @@ impl<T: Real> Payload<T> {
     fn take_load(&mut self, kind: usize, axis: usize) {
         if let Some(taken) = self.taken.get(kind).filter(|taken| !taken.is_empty()) {
             let scalar = taken.scalar(axis, kind == 1, self.waited(CYCLE));
-            let surprise = take(&mut self.covariance, &mut self.pending, &scalar, true);
+            let (_, surprise) = take(&mut self.covariance, &mut self.pending, &scalar, true);
             if let Some(mean) = self.load_surprise.get_mut(axis) {
                 *mean += (surprise.min(T::lit(WILD)) - *mean) * T::lit(0.06);
             }
@@ -475,7 +493,7 @@ impl<T: Real> Payload<T> {
         }
         let sensitivity = pendulum.sensitivity(&self.params, pivot, &self.state);
         let rows = sensitivity.acceleration(&self.params, &self.state.rod);
-        self.spread.advance(&mut self.covariance, &rows, &self.state.rod);
+        self.spread.advance(&mut self.covariance, &rows, self.linearized.rod());
         self.spread.relax(&mut self.state);
         // Each period unread moves the rod by what the accelerometer might have said.
         let unread = T::lit(UNREAD) * self.params.period / self.params.cable_length * self.unread;
@@ -529,12 +547,12 @@ impl<T: Real> Payload<T> {
             validity: self.validity(rod_deviation),
             rod_deviation,
             rate_deviation: both(index::RATE),
-            surprise: self.surprise,
+            surprise: self.health.surprise,
         }
     }
 
     fn validity(&self, rod_deviation: T) -> Validity {
-        let [x, y, z] = self.surprise;
+        let [x, y, z] = self.health.surprise;
         if self.watch.cable == Cable::Slack {
             Validity::Slack
         } else if rod_deviation > T::lit(KNOWN) || self.age < SEEN {
@@ -548,24 +566,24 @@ impl<T: Real> Payload<T> {
 }
 
 /// Takes in a scalar of a batch, whose innovation is against the state before the batch. The mass
-/// may be only considered. Returns ν²/S.
+/// may be only considered. Returns the gain, and ν²/S.
 fn take<T: Real>(
     covariance: &mut Covariance<T>,
     pending: &mut [T; ERRORS],
     scalar: &Scalar<T, ERRORS>,
     is_considered: bool,
-) -> T {
+) -> ([T; ERRORS], T) {
     let innovation = scalar.innovation - dot(&scalar.h, pending);
     if !innovation.is_finite() {
-        return T::zero();
+        return ([T::zero(); ERRORS], T::zero());
     }
-    let mass = pending[index::MASS];
     let absorbed = covariance.absorb(scalar, innovation, is_considered.then_some(index::MASS));
-    for (sum, correction) in pending.iter_mut().zip(absorbed.correction) {
-        *sum += correction;
-    }
+    let mut gain = absorbed.gain;
     if is_considered {
-        pending[index::MASS] = mass;
+        gain[index::MASS] = T::zero();
     }
-    absorbed.surprise
+    for (sum, gain) in pending.iter_mut().zip(&gain) {
+        *sum += *gain * absorbed.innovation;
+    }
+    (gain, absorbed.surprise)
 }

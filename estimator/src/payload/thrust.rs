@@ -12,13 +12,24 @@
 //!
 //! ```text
 //! h·δx = [m_L ((b_i·q) δs + s b_i·δq) + b_i·J_Q δw + m₀ s (b_i·q) δμ − [i=3] T δk_T]/m_Q + [i<3] δl_i
-//! R_i = max(r_i², N_a²/T_w) + N_a²/T_w
+//! R_i = max(r_i², N_a²/(4 T_w)) + N_a²/T_w
 //! E(ζ · noise of z_i) = N_a²/L (b_i − q (b_i·q))_h                                            (7)
 //! ```
 //!
 //! By (7) the accelerometer that has moved the rod over the window is not taken for a second
-//! witness: where it shakes, the model weighs more. (That the second and third scalar of a batch
-//! meet a state corrected by the first changes (7) in second order, and is left out.)
+//! witness: where it shakes, the model weighs more. The scalars of a batch come one by one, and a
+//! gain K of the first leaves the second with c_2 − K (h_1·c_2).
+//!
+//! The covariance stays positive if before the batch it is at least Σ c_i c_iᵀ/R_i, with c_i the
+//! correlation (7): then state and noises have a joint covariance, of which a scalar leaves the
+//! Schur complement. Since b_i are a frame, and M = 1 − q qᵀ a projection,
+//!
+//! ```text
+//! Σ c_i c_iᵀ/R_i ≤ (N_a²/L)² M (Σ b_i b_iᵀ) M/min R_i = (N_a²/L)² M/min R_i ≤ 4/5 (N_a/L)² T_w M
+//! ```
+//!
+//! and (6) has just given the rate (N_a/L)² T_w M with the same q: a fifth of it stays for rounding
+//! and for what the body turns in two periods, which is what R_i has its maximum for.
 
 use model::{Matrix3, Real, Vector3};
 
@@ -26,7 +37,7 @@ use super::params::PayloadParams;
 use super::pendulum::{Pendulum, Pivot, Pull, Sensitivity, into_body};
 use super::predict::Covariance;
 use super::state::{ERRORS, PayloadState, index};
-use crate::covariance::Scalar;
+use crate::covariance::{Scalar, dot};
 use crate::lever::axes;
 
 /// What acts over a window: sums over its periods.
@@ -127,6 +138,11 @@ impl<T: Real> Linearized<T> {
         }
     }
 
+    /// q.
+    pub(crate) fn rod(&self) -> &Vector3<T> {
+        &self.rod
+    }
+
     /// Before there is a state.
     pub(crate) fn none() -> Self {
         let zero = T::zero();
@@ -162,11 +178,8 @@ impl<T: Real> Linearized<T> {
             Axis::Second => (noise.lateral, mean.residual.y),
             Axis::Thrust => (noise.axial, mean.residual.z),
         };
-        // The model counts as no better than the accelerometer: what (7) then takes is no more than
-        // what (6) has given to the rate in half a window, whatever else the rate hangs together
-        // with, and the covariance stays positive.
         let white = density / window;
-        let mut scalar = Scalar::of(residual, (least * least).max(white) + white);
+        let mut scalar = Scalar::of(residual, (least * least).max(white * T::lit(0.25)) + white);
         let by_tension = self.mass * along * per_mass;
         let pull = self.mass * self.tension * per_mass;
         let [s_q1, s_q2, s_w1, s_w2, s_a1, s_a2, s_r1, s_r2, s_mass] = self.tension_by.map(|s| s * by_tension);
@@ -192,11 +205,68 @@ impl<T: Real> Linearized<T> {
             mass,
         ];
         if !is_witnessed {
-            let across = (body - self.rod * along) * (density / params.cable_length);
-            scalar.correlation[index::RATE] = across.x;
-            scalar.correlation[index::RATE + 1] = across.y;
+            let [x, y] = self.correlation(params, body);
+            scalar.correlation[index::RATE] = x;
+            scalar.correlation[index::RATE + 1] = y;
         }
         (scalar, along)
+    }
+
+    /// (7) for the body axis `body` in N.
+    #[inline(always)]
+    pub(crate) fn correlation(&self, params: &PayloadParams<T>, body: &Vector3<T>) -> [T; 2] {
+        let density = params.noise.accelerometer * params.noise.accelerometer;
+        let across = (body - self.rod * body.dot(&self.rod)) * (density / params.cable_length);
+        [across.x, across.y]
+    }
+}
+
+/// What the scalars of a batch leave of the correlations of those that come after them.
+#[derive(Clone, Debug)]
+pub(crate) struct Batch<T> {
+    /// To be taken off the second's and the third's, so often.
+    taken: [T; ERRORS],
+    share: [T; 2],
+}
+
+impl<T: Real> Batch<T> {
+    /// Before a batch.
+    pub(crate) fn none() -> Self {
+        Self { taken: [T::zero(); ERRORS], share: [T::zero(); 2] }
+    }
+
+    /// Brings the `correlation` of a scalar from before the batch to its turn.
+    #[inline(always)]
+    pub(crate) fn correct(&self, axis: Axis, correlation: &mut [T; ERRORS]) {
+        let share = match axis {
+            Axis::First => return,
+            Axis::Second => self.share[0],
+            Axis::Thrust => self.share[1],
+        };
+        for (entry, &taken) in correlation.iter_mut().zip(&self.taken) {
+            *entry -= taken * share;
+        }
+    }
+
+    /// A scalar `h` was taken in with this `gain`; (7) of the axes to come is `of` their place.
+    #[inline(always)]
+    pub(crate) fn follow(&mut self, axis: Axis, h: &[T; ERRORS], gain: &[T; ERRORS], of: impl Fn(usize) -> [T; 2]) {
+        let meets = |[x, y]: [T; 2]| h[index::RATE] * x + h[index::RATE + 1] * y;
+        match axis {
+            Axis::First => {
+                self.taken = *gain;
+                self.share = [meets(of(1)), meets(of(2))];
+            }
+            Axis::Second => {
+                let before = self.share[1];
+                let share = meets(of(2)) - dot(h, &self.taken) * before;
+                for (taken, &gain) in self.taken.iter_mut().zip(gain) {
+                    *taken = *taken * before + gain * share;
+                }
+                self.share[1] = T::one();
+            }
+            Axis::Thrust => *self = Self::none(),
+        }
     }
 }
 
@@ -211,17 +281,25 @@ pub(crate) enum Axis {
     Thrust,
 }
 
+/// Whether the rod is known to 0.04 rad an axis.
+pub(crate) fn is_rod_known<T: Real>(covariance: &Covariance<T>) -> bool {
+    variance(covariance) <= T::lit(2.0 * 0.04 * 0.04)
+}
+
+/// Of the rod, both axes together.
+fn variance<T: Real>(covariance: &Covariance<T>) -> T {
+    covariance.get(index::ROD, index::ROD) + covariance.get(index::ROD + 1, index::ROD + 1)
+}
+
 /// Whether the mass is only considered in a scalar, with b·q = `along` for its axis, rather than
-/// estimated.
+/// estimated, once the rod is known.
 ///
-/// Until the rod is known to 0.04 rad an axis a very light load blown far out explains what is
-/// measured as well, and a filter that may choose finds it. And at hover thrust scale and mass are
+/// At hover thrust scale and mass are
 /// one: what the lateral axes say of the mass is then the product of two errors, which would lead
 /// there in minutes. So once it `is_found` they have a say only while the rod is plainly off the
 /// thrust's axis: by 0.05 rad and three of its deviations, together, which no noise about a hover
 /// is.
 pub(crate) fn is_considered<T: Real>(covariance: &Covariance<T>, axis: Axis, along: T, is_found: bool) -> bool {
-    let variance = covariance.get(index::ROD, index::ROD) + covariance.get(index::ROD + 1, index::ROD + 1);
-    let is_plain = along * along > variance * T::lit(4.5) + T::lit(0.05 * 0.05);
-    variance > T::lit(2.0 * 0.04 * 0.04) || (is_found && axis != Axis::Thrust && !is_plain)
+    let is_plain = along * along > variance(covariance) * T::lit(4.5) + T::lit(0.05 * 0.05);
+    is_found && axis != Axis::Thrust && !is_plain
 }
