@@ -419,6 +419,10 @@ int32_t slung_estimator_step(slung_estimator *estimator, uint32_t frames, const 
 /* The load as somebody saw it, with the deviation per axis and its age: not needed, but it helps. SLUNG_OUT_OF_RANGE: not used. */
 int32_t slung_estimator_observe(slung_estimator *estimator, uint32_t frames, const float payload_position_world_m[3],
                                 float deviation_m, float age_s);
+/* Load and UAV (its centre of mass) as motion capture saw both at one instant, with the deviation per axis of each: better than the load
+ * alone, since what navigation makes of the UAV's place shares the accelerometer's noise with the rod. SLUNG_OUT_OF_RANGE: not used. */
+int32_t slung_estimator_observe_pair(slung_estimator *estimator, uint32_t frames, const float payload_position_world_m[3],
+                                     const float uav_position_world_m[3], float deviation_m, float age_s);
 size_t slung_estimator_bytes(void);
 
 /* The UAV's own motion from an IMU and what tells where it is, for who has no autopilot's navigation. Link with --gc-sections: who does not

@@ -153,8 +153,37 @@ pub unsafe extern "C" fn slung_estimator_observe(
         let (instance, position) = unsafe { (exclusive(estimator)?, shared(payload_position_world_m)?) };
         let filter = instance.filter()?;
         let position = frames(number)?.inertial(&Vector3::from(*position));
-        let is_used = filter.observe(&LoadMeasurement::Position(position, deviation_m), age_s);
-        if is_used { Ok(()) } else { Err(Status::OutOfRange) }
+        used(filter.observe(&LoadMeasurement::Position(position, deviation_m), age_s))
     };
     code(observe())
+}
+
+/// The places of load and UAV as motion capture saw both; see the header.
+///
+/// # Safety
+/// As [`slung_estimator_step`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn slung_estimator_observe_pair(
+    estimator: *mut Instance,
+    number: u32,
+    payload_position_world_m: *const [f32; 3],
+    uav_position_world_m: *const [f32; 3],
+    deviation_m: f32,
+    age_s: f32,
+) -> i32 {
+    let observe = || {
+        // SAFETY: the caller's promise.
+        let (instance, load, uav) =
+            unsafe { (exclusive(estimator)?, shared(payload_position_world_m)?, shared(uav_position_world_m)?) };
+        let filter = instance.filter()?;
+        let frames = frames(number)?;
+        let pair = [load, uav].map(|position| frames.inertial(&Vector3::from(*position)));
+        used(filter.observe(&LoadMeasurement::Pair(pair, deviation_m), age_s))
+    };
+    code(observe())
+}
+
+/// What is not used was no measurement.
+fn used(is_used: bool) -> Result<(), Status> {
+    if is_used { Ok(()) } else { Err(Status::OutOfRange) }
 }

@@ -24,7 +24,7 @@ pub use crate::controller::{
 };
 pub use crate::estimator::{
     BYTES as ESTIMATOR_BYTES, slung_estimator_bytes, slung_estimator_create, slung_estimator_observe,
-    slung_estimator_step,
+    slung_estimator_observe_pair, slung_estimator_step,
 };
 pub use crate::frames::{slung_state_from_cable, slung_state_from_payload};
 pub use crate::navigation::{

@@ -109,6 +109,8 @@ static int estimate(void) {
         found.struct_size = sizeof found;
         about(&uav, payload, velocity);
         if (step % 7 == 6) slung_estimator_observe(&estimator, SLUNG_NED_FRD, payload, 0.125f, 0);
+        if (step % 11 == 10)
+            slung_estimator_observe_pair(&estimator, SLUNG_NED_FRD, payload, uav.position_world_m, 0.125f, 0.0078125f);
         stack_paint();
         slung_estimator_step(&estimator, SLUNG_NED_FRD, step % 50 == 49 ? NULL : &uav, force, 29.5f + about_zero(), &found);
         if (stack_used() > stack) stack = stack_used();

@@ -288,6 +288,8 @@ class PayloadFilter:
         """A camera's: from the hook to the load in N, with its deviation, rad. Whether it was used."""
     def observe_position(self, position: ArrayLike, deviation: float, age: float = 0.0) -> bool:
         """Of the load in N, m. Whether it was used."""
+    def observe_pair(self, position: ArrayLike, uav_position: ArrayLike, deviation: float, age: float = 0.0) -> bool:
+        """Motion capture's: load and UAV (its centre of mass) in N at one instant, m, with the deviation of each. Whether it was used."""
     def observe_velocity(self, velocity: ArrayLike, deviation: float, age: float = 0.0) -> bool:
         """Of the load in N, m/s. Whether it was used."""
 

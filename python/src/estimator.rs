@@ -201,6 +201,11 @@ impl PayloadFilter {
     fn observe_position(&mut self, position: Vector, deviation: f64, age: f64) -> bool {
         self.0.observe(&LoadMeasurement::Position(single(position), deviation as f32), age as f32)
     }
+    #[pyo3(signature = (position, uav_position, deviation, age = 0.0))]
+    fn observe_pair(&mut self, position: Vector, uav_position: Vector, deviation: f64, age: f64) -> bool {
+        let pair = [position, uav_position].map(single);
+        self.0.observe(&LoadMeasurement::Pair(pair, deviation as f32), age as f32)
+    }
     #[pyo3(signature = (velocity, deviation, age = 0.0))]
     fn observe_velocity(&mut self, velocity: Vector, deviation: f64, age: f64) -> bool {
         self.0.observe(&LoadMeasurement::Velocity(single(velocity), deviation as f32), age as f32)
