@@ -108,7 +108,8 @@ pub fn text(mode: Mode, fault: Option<Fault>, waits_for: Option<Margin>, absence
     text
 }
 
-fn unseen_text(unseen: Unseen) -> &'static str {
+/// Why it does not know its state.
+pub fn unseen_text(unseen: Unseen) -> &'static str {
     match unseen {
         Unseen::Navigation => "no navigation of the UAV",
         Unseen::Imu => "no HIGHRES_IMU",
@@ -140,6 +141,8 @@ pub fn notice(notice: Notice) -> &'static str {
         Notice::Killed => "rotors stopped by the kill switch",
         Notice::Blind => "rotors stopped: no state for FS_BLIND_T",
         Notice::Fence => "too near the fence: FNC_ACT",
+        Notice::Drifts => "no fix: position drifts",
+        Notice::Fixed => "fixes come again",
         Notice::Lost(Loss::Station) => "ground station lost: FS_GCS_ACT",
         Notice::Lost(Loss::Stick) => "stick or radio lost: FS_RC_ACT",
         Notice::Lost(Loss::Battery) => "battery below FS_BAT_PCT: FS_BAT_ACT",

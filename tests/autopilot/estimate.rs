@@ -150,6 +150,8 @@ struct Field {
     step: u64,
     modes: Vec<Mode>,
     said: Vec<String>,
+    /// Of the last command.
+    faults: LoadFault,
     /// The receiver gives no fix any more.
     is_jammed: bool,
 }
@@ -175,6 +177,7 @@ impl Field {
             step: 0,
             modes: vec![Mode::Off],
             said: Vec::new(),
+            faults: LoadFault::empty(),
             is_jammed: false,
         }
     }
@@ -201,6 +204,7 @@ impl Field {
                 assert_eq!(self.station.say(message), []);
             }
             let answer = self.station.autopilot.tick();
+            self.faults = answer.command.faults;
             let mode = self.station.autopilot.mode();
             if self.modes.last() != Some(&mode) {
                 self.modes.push(mode);
@@ -281,7 +285,14 @@ fn a_receiver_that_is_silent_for_longer_than_it_may_be_is_said() {
     let mut field = Field::new(scenario(""), 2.0, 4);
     field.take_off_and_follow();
     field.is_jammed = true;
-    field.pass(9.0, &mut |_| {});
+    field.pass(1.4, &mut |_| {});
+    assert_eq!(field.said.last().unwrap(), "on the path");
+    assert!(!field.faults.contains(LoadFault::LOAD_FAULT_NO_FIX));
+    // After a second and a half it says so, and flies on.
+    field.pass(0.3, &mut |_| {});
+    assert_eq!(field.said.last().unwrap(), "no fix: position drifts");
+    assert!(field.faults.contains(LoadFault::LOAD_FAULT_NO_FIX));
+    field.pass(7.3, &mut |_| {});
     assert_eq!(field.modes.last(), Some(&Mode::Follow), "{:?}", field.said);
     field.pass(3.0, &mut |_| {});
     assert_eq!(field.said.last().unwrap(), "fault: no fix (EST_FIX_T)");
@@ -289,6 +300,8 @@ fn a_receiver_that_is_silent_for_longer_than_it_may_be_is_said() {
     field.is_jammed = false;
     field.pass(0.5, &mut |_| {});
     assert_eq!(field.modes.last(), Some(&Mode::Hold), "{:?}", field.said);
+    assert!(field.said.iter().any(|said| said == "fixes come again"), "{:?}", field.said);
+    assert!(!field.faults.contains(LoadFault::LOAD_FAULT_NO_FIX));
 }
 
 #[test]
@@ -299,7 +312,14 @@ fn without_what_it_needs_it_does_not_arm() {
         if source > 1.5 {
             field.pass(0.4, &mut |_| {});
         }
-        assert_eq!(field.station.autopilot.arm(), Err(ArmRefused::NoState), "source {source}");
+        let (why, words) = if source > 1.5 {
+            (ArmRefused::Unseen(Unseen::Fix), "not armed: waits for a fix of the receiver")
+        } else {
+            (ArmRefused::NoState, "not armed: no good state just now")
+        };
+        assert_eq!(field.station.autopilot.arm(), Err(why), "source {source}");
+        let (_, said) = field.station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+        assert_eq!(said, [words], "source {source}");
         field.pass(1.0, &mut |_| {});
         assert_eq!(field.station.autopilot.arm(), Ok(()));
     }

@@ -3,10 +3,12 @@
 use controller::{Actuation as _, Request};
 use rig::{Rig, SetupError, parameter};
 
-use super::{Autopilot, Drive, Notice, Underway};
+use super::{Absence, Autopilot, Drive, Notice, Underway};
 use crate::epoch::Epoch;
+use crate::estimate::Unseen;
 use crate::failsafe::Loss;
 use crate::mission::{Flown, NoRig, Refusal};
+use crate::report;
 use crate::settings::Setting;
 
 /// Arming needs a state no older than this, s.
@@ -25,6 +27,8 @@ pub enum ArmRefused {
     Weak(f32),
     /// There has been no good state just now.
     NoState,
+    /// The estimator knows none, for this reason.
+    Unseen(Unseen),
     /// Good states come this far apart, s, which is longer than `POL_COAST`, s.
     Slow(f32, f32),
     /// A kill switch is on.
@@ -47,6 +51,8 @@ impl core::fmt::Display for ArmRefused {
             Self::Mission(refusal) => f.write_str(&refusal.text),
             Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),
+            Self::Unseen(Unseen::Fix) => f.write_str("not armed: waits for a fix of the receiver"),
+            Self::Unseen(unseen) => write!(f, "not armed: {}", report::unseen_text(*unseen)),
             Self::Slow(apart, most) => write!(f, "not armed: states {apart:.2} s apart, POL_COAST {most}"),
             Self::Killed => f.write_str("not armed: the kill switch is on"),
             Self::Lost(Loss::Station) => f.write_str("not armed: ground station lost"),
@@ -74,7 +80,10 @@ impl Autopilot {
             }
             self.make_estimator().map_err(|error| ArmRefused::Setup(error.into()))?;
             if self.drive() == Drive::Flight && self.since_state_s > FRESH_S {
-                return Err(ArmRefused::NoState);
+                return Err(match self.absence {
+                    Some(Absence::Unseen(unseen)) => ArmRefused::Unseen(unseen),
+                    _ => ArmRefused::NoState,
+                });
             }
             let most = self.settings.rig().get(parameter!("POL_COAST"));
             // One gap is no rate.

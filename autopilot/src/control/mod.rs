@@ -53,6 +53,8 @@ pub struct Autopilot {
     navigation: Navigation,
     /// While `EST_LOAD` is on; forgotten with each change of a parameter.
     estimator: Option<Estimator>,
+    /// The estimator goes by fixes, and misses them.
+    misses_fix: bool,
     /// The UAV's own navigation was there at the last control period.
     navigates: bool,
     /// The UAV as it was known then, from that or from the load's state.
@@ -108,6 +110,7 @@ impl Autopilot {
             inbox: None,
             navigation: Navigation::new(),
             estimator: None,
+            misses_fix: false,
             navigates: false,
             uav: None,
             stands: false,

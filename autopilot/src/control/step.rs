@@ -107,6 +107,7 @@ impl Autopilot {
             None => Seen::default(),
         };
         let (seen, unseen) = self.see(seen);
+        faults.set(LoadFault::LOAD_FAULT_NO_FIX, self.watch_fixes());
         let good = seen.good();
         self.navigates = seen.uav().is_some();
         let length = self.settings.rig().get(parameter!("VEH_ROD"));
@@ -240,6 +241,17 @@ impl Autopilot {
             None if is_lockstep => (seen, None),
             None => (seen.or(&self.navigation), None),
         }
+    }
+
+    /// Whether fixes are missing; in flight, the pilot hears when they begin to and when they come
+    /// again.
+    fn watch_fixes(&mut self) -> bool {
+        let misses = self.estimator.as_ref().is_some_and(Estimator::misses_fix);
+        if self.is_armed() && misses != self.misses_fix {
+            self.note(if misses { Notice::Drifts } else { Notice::Fixed });
+        }
+        self.misses_fix = misses;
+        misses
     }
 
     /// Stops the rotors where they have turned for too long without a state, or in fault.

@@ -57,6 +57,10 @@ pub enum Notice {
     Blind,
     /// Load, UAV or cable came too near the fence, and the configured action is taken.
     Fence,
+    /// No fix for so long that position drifts.
+    Drifts,
+    /// Fixes come again.
+    Fixed,
     /// This is lost, and the configured action taken.
     Lost(Loss),
 }

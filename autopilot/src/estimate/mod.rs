@@ -54,6 +54,9 @@ pub struct Found {
     pub unseen: Option<Unseen>,
 }
 
+/// Without a fix for so long, s, somebody has to be told: no receiver is slower than 1 Hz.
+const LATE_S: f32 = 1.5;
+
 /// The estimator at work.
 #[derive(Clone, Debug)]
 pub struct Estimator {
@@ -85,6 +88,11 @@ impl Estimator {
         self.payload = if is_standing { payload.with_slack_cable() } else { payload };
         self.thrust = None;
         Ok(())
+    }
+
+    /// Fixes are what it goes by, and are missing: position drifts.
+    pub fn misses_fix(&self) -> bool {
+        self.own.as_ref().is_some_and(|own| own.fix_age_s() > LATE_S)
     }
 
     /// A control period, at whose end the rotors give `thrust`, N, if they turn.

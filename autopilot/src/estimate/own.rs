@@ -78,6 +78,11 @@ impl Own {
         }
     }
 
+    /// Since the last fix, s; for ever before the first.
+    pub fn fix_age_s(&self) -> f32 {
+        self.filter.as_ref().map_or(f32::INFINITY, |filter| filter.health().fix_age)
+    }
+
     /// Averages until there is all that it takes to begin.
     fn begin(
         &mut self,

@@ -12,7 +12,7 @@ use controller::{Fault, Margin, Mode};
 use link::dialect::*;
 use link::{Address, MavMessage, Message as _, Rejected};
 
-use crate::control::{Autopilot, Drive};
+use crate::control::{Autopilot, Drive, Notice};
 use crate::mission::Refusal;
 use crate::report;
 use crate::store::NotKept;
@@ -192,7 +192,12 @@ impl Server {
         let (number, notice) = autopilot.notice();
         if number != self.noticed {
             self.noticed = number;
-            return Some(status(MavSeverity::MAV_SEVERITY_CRITICAL, report::notice(notice)));
+            let severity = match notice {
+                Notice::Fixed => MavSeverity::MAV_SEVERITY_INFO,
+                Notice::Drifts => MavSeverity::MAV_SEVERITY_WARNING,
+                _ => MavSeverity::MAV_SEVERITY_CRITICAL,
+            };
+            return Some(status(severity, report::notice(notice)));
         }
         let now @ (mode, fault, waits_for) = (autopilot.mode(), autopilot.fault(), autopilot.waits_for());
         if now == self.reported {
