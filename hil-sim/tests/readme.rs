@@ -53,12 +53,21 @@ fn its_costs_are_the_expected_ones() {
         ("fourier8", "| whole step, Fourier loop of 8 harmonics |"),
         ("route", "| whole step, route of any length |"),
         ("flown", "| as a board flies it: circle chosen at run time, limits and four rotors |"),
+        ("flown-on-estimate", "| the same on an estimate: navigation, payload filter, and that |"),
     ] {
         let shown = format!("{row} {} to {} | {}", count(case, "best"), count(case, "worst"), rest(case));
         assert!(README.contains(&shown), "{shown}");
     }
     for (case, row) in [("law-circle", "| the law alone, circle |"), ("law-bent", "| the law alone, bent curve |")] {
         let shown = format!("{row} {} | {}", count(case, "worst"), rest(case));
+        assert!(README.contains(&shown), "{shown}");
+    }
+    for (case, row) in [
+        ("load-filter", "the payload filter takes {} instructions a period"),
+        ("load-filter-and-navigation", "{} with navigation"),
+        ("flown-on-estimate", "whole period on an estimate {}."),
+    ] {
+        let shown = row.replace("{}", &count(case, "mean"));
         assert!(README.contains(&shown), "{shown}");
     }
     let joining =

@@ -10,7 +10,9 @@ use crate::{Case, Digest, Random};
 const PERIOD: f32 = 0.002;
 const GRAVITY: f32 = 9.81;
 /// Thrust of the paper's vehicle at hover, N.
-const HOVER: f32 = 3.0 * GRAVITY;
+pub(crate) const HOVER: f32 = 3.0 * GRAVITY;
+/// Where the UAV hovers, m: with its load on the paper's circle.
+pub(crate) const PLACE: Vector3<f32> = Vector3::new(5.0, 0.0, -12.0);
 /// Periods from one reading to the next: of the receiver at 10 Hz, the magnetometer at 20 Hz, the
 /// barometer at 25 Hz.
 const FIX: u32 = 50;
@@ -22,10 +24,13 @@ pub struct LoadBehindNavigation(Payload<f32>);
 
 /// Both filters, one behind the other.
 pub struct LoadAndNavigation {
-    navigation: Navigation<f32>,
-    payload: Payload<f32>,
+    pub(crate) navigation: Navigation<f32>,
+    pub(crate) payload: Payload<f32>,
     step: u32,
 }
+
+/// What the instruments read.
+pub(crate) type Readings = (Imu<f32>, Fix<f32>, Vector3<f32>, f32);
 
 fn payload() -> Option<Payload<f32>> {
     let params = PayloadParams {
@@ -53,8 +58,24 @@ impl LoadAndNavigation {
             antenna: Vector3::new(-0.1, 0.0, -0.15),
             ..NavigationParams::every(PERIOD)
         };
-        let start = Motion::at_rest(Vector3::new(0.0, 0.0, -10.0), GRAVITY);
-        Some(Self { navigation: Navigation::new(params, &start, [0.02, 0.1]).ok()?, payload: payload()?, step: 0 })
+        let start = Motion::at_rest(PLACE, GRAVITY);
+        let navigation = Navigation::new(params, &start, [0.02, 0.1]).ok()?;
+        Some(Self { navigation, payload: payload()?, step: 0 })
+    }
+
+    /// What else has come with a period's IMU.
+    pub(crate) fn take(&mut self, (_, fix, field, height): &Readings) {
+        self.step += 1;
+        // What is refused is not taken, and the state that comes of it is digested.
+        if self.step.is_multiple_of(FIX) {
+            let _ = self.navigation.fix(fix);
+        }
+        if self.step.is_multiple_of(FIELD) {
+            let _ = self.navigation.magnetic_field(field);
+        }
+        if self.step.is_multiple_of(HEIGHT) {
+            let _ = self.navigation.height(*height);
+        }
     }
 }
 
@@ -91,35 +112,24 @@ impl Case for LoadBehindNavigation {
 }
 
 impl Case for LoadAndNavigation {
-    /// What the instruments read.
-    type State = (Imu<f32>, Fix<f32>, Vector3<f32>, f32);
+    type State = Readings;
     type Output = Estimate<f32>;
 
     fn prepare(&mut self, random: &mut Random) -> Self::State {
         let fix = Fix {
-            position: Some(Vector3::new(-0.1, 0.0, -10.15) + random.vector(0.02)),
+            position: Some(PLACE + Vector3::new(-0.1, 0.0, -0.15) + random.vector(0.02)),
             velocity: Some(random.vector(0.05)),
             position_accuracy: [0.01, 0.02],
             velocity_accuracy: [0.04, 0.06],
             age: 0.1,
         };
         let field = Vector3::new(0.45, 0.0, 0.89) + random.vector(0.02);
-        (imu(random), fix, field, 10.0 + random.around_zero(0.3))
+        (imu(random), fix, field, random.around_zero(0.3) - PLACE.z)
     }
 
-    fn step(&mut self, (imu, fix, field, height): &Self::State) -> Estimate<f32> {
-        self.step += 1;
-        // What is refused is not taken, and the state that comes of it is digested.
-        if self.step.is_multiple_of(FIX) {
-            let _ = self.navigation.fix(fix);
-        }
-        if self.step.is_multiple_of(FIELD) {
-            let _ = self.navigation.magnetic_field(field);
-        }
-        if self.step.is_multiple_of(HEIGHT) {
-            let _ = self.navigation.height(*height);
-        }
-        let motion = self.navigation.step(Some(imu));
+    fn step(&mut self, readings: &Readings) -> Estimate<f32> {
+        self.take(readings);
+        let motion = self.navigation.step(Some(&readings.0));
         self.payload.step(Some(&motion), Some(HOVER))
     }
 

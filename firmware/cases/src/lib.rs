@@ -13,7 +13,7 @@ mod random;
 
 use alone::Alone;
 use filters::{LoadAndNavigation, LoadBehindNavigation};
-use flown::Flown;
+use flown::{Flown, FlownOnEstimate};
 use laws::{Following, Tracking};
 use laying::Laying;
 
@@ -68,6 +68,7 @@ pub fn visit_all(visitor: &mut impl Visitor) {
     visitor.visit("flown", Flown::new());
     visitor.visit("load-filter", LoadBehindNavigation::new());
     visitor.visit("load-filter-and-navigation", LoadAndNavigation::new());
+    visitor.visit("flown-on-estimate", FlownOnEstimate::new());
     visitor.visit("laying", Some(Laying::new()));
 }
 
