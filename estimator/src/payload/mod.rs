@@ -484,6 +484,12 @@ impl<T: Real> Payload<T> {
         let waited = self.waited(periods);
         self.fresh.iter_mut().enumerate().for_each(|(kind, fresh)| fresh.shift(&self.pending, kind == 1, waited));
         self.pending = [T::zero(); ERRORS];
+        // Readings that can't be true, kept up, may not make the rod whirl beyond what a state may
+        // hold.
+        let turning = self.state.rod_rate.dot(&self.state.rod_rate);
+        if turning > T::lit(FASTEST * FASTEST) {
+            self.state.rod_rate *= T::lit(FASTEST) / turning.sqrt();
+        }
     }
 
     /// Moves the covariance on.
@@ -503,12 +509,6 @@ impl<T: Real> Payload<T> {
         let (rod, rate) = (T::one(), T::lit(FASTEST * FASTEST));
         self.covariance.limit(&[(0, rod), (1, rod), (2, rate), (3, rate)]);
         self.unread = T::zero();
-        // Readings that can't be true, kept up, may not make the rod whirl beyond what a state may
-        // hold.
-        let turning = self.state.rod_rate.dot(&self.state.rod_rate);
-        if turning > T::lit(FASTEST * FASTEST) {
-            self.state.rod_rate *= T::lit(FASTEST) / turning.sqrt();
-        }
     }
 
     /// The answer.
