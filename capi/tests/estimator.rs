@@ -73,13 +73,14 @@ fn a_pair_shows_the_rod_whatever_navigation_makes_of_the_place() {
         let pair = rod(frames, |room, load, uav| unsafe {
             capi::slung_estimator_observe_pair(room.cast(), frames, load, uav, 0.001, 0.0)
         });
+        // By a millimetre in each place over 2 m of cable; twice that is left.
         assert!(pair.abs() < 0.002, "frames {frames}: {pair}");
-        // The load alone is taken against the wrong hook: of 0.25 rad the accelerometer takes some
-        // back.
+        // The load alone is taken against the wrong hook: of 0.25 rad the accelerometer takes most
+        // back, but not all but a pair's error.
         let alone = rod(frames, |room, load, _| unsafe {
             capi::slung_estimator_observe(room.cast(), frames, load, 0.001, 0.0)
         });
-        assert!(alone < -0.1, "frames {frames}: {alone}");
+        assert!(alone < -0.02, "frames {frames}: {alone}");
         // What is no measurement is refused.
         for (uav, deviation) in [([f32::NAN; 3], 0.001), ([0.0; 3], 0.0), ([0.0; 3], f32::INFINITY)] {
             let refused = |room: *mut (), load: &[f32; 3], _: &[f32; 3]| unsafe {
