@@ -231,6 +231,8 @@ fn it_lands_softly_whatever_fails_on_the_way() {
         "sensors = { uav_position = { nan = { at_s = 42.0, for_s = 100.0 } } }",
         "sensors = { uav_position = { freeze = { at_s = 44.0, for_s = 2.5 } } }",
         "sensors = { body_rate = { nan = { at_s = 45.0, for_s = 1.0 } } }",
+        "sensors = { body_rate = { freeze = { at_s = 43.0, for_s = 4.0 } } }",
+        "sensors = { body_rate = { drop_out = { at_s = 3.0, for_s = 100.0 } } }",
         "sensors = { attitude = { freeze = { at_s = 45.0, for_s = 0.3 } } }",
         "cable = { snagged = { at_s = 43.0, for_s = 3.0 } }",
         "actuators = { latency_s = 0.04 }",
@@ -255,8 +257,14 @@ fn it_lands_softly_whatever_fails_on_the_way() {
 fn two_seconds_without_a_measurement_cost_no_height() {
     const HEIGHT: f64 = 1.0;
     let follow = r#"{ at_s = 0.0, do = "idle" }, { at_s = 1.0, do = "hold" }, { at_s = 12.0, do = "follow" }"#;
-    for channels in [&["position"] as &[_], &["position", "velocity"], &["rod"], &["rod", "rod_rate"], &["rod_rate"]]
-    {
+    for channels in [
+        &["position"] as &[_],
+        &["position", "velocity"],
+        &["rod"],
+        &["rod", "rod_rate"],
+        &["rod_rate"],
+        &["body_rate"],
+    ] {
         for wrong in ["nan", "drop_out", "freeze"] {
             let tables = channels
                 .iter()

@@ -8,7 +8,7 @@ use model::{Real, Vehicle};
 /// The implied weight, a share of what was told, bounces when it goes from more than this above its
 /// mean over so many seconds to more than it below and back so many times, each at least as fast as
 /// on a cable that its load stretches by this share.
-const SWING: f64 = 0.02;
+const SWING: f64 = 0.03;
 const AVERAGED: f64 = 1.0;
 const CROSSINGS: u8 = 2;
 const STRETCH: f64 = 0.1;

@@ -15,6 +15,7 @@ use crate::flight::landing::Landing;
 use crate::flight::mode::{Fault, Measured, Mode, Output, Policy, Request};
 use crate::flight::motion::Motion;
 use crate::flight::payload::Payload;
+use crate::flight::turning::Stuck;
 use crate::law::Law;
 use crate::law::approach::{ApproachLimits, Pace};
 use crate::law::hold::Hold;
@@ -103,6 +104,8 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
     motion: Motion<T>,
+    /// Of body and rod.
+    stuck: [Stuck<T>; 2],
     /// For how long the attitude has been led by body rates alone, s.
     led: T,
 }
@@ -134,6 +137,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             fault: None,
             is_by_law: false,
             motion: Motion::new(period),
+            stuck: [Stuck::none(); 2],
             cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
@@ -258,7 +262,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let uav = measured.uav.filter(|uav| uav.check().is_ok());
         let fault = match measured.state {
             None => Fault::NoState,
-            Some(state) => match state.check() {
+            Some(state) => match state.check().and_then(|()| self.check_rates(state)) {
                 Err(channel) => Fault::State(channel),
                 Ok(()) => match self.believe(state, uav) {
                     Ok(uav) => return self.with_load(state, uav, measured.specific_force),

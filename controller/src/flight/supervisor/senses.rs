@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use super::Supervisor;
 use crate::flight::cable::Watching;
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output};
-use crate::flight::turning::{LED, mend};
+use crate::flight::turning::{LED, angle, mend};
 use crate::law::Law;
 use crate::sampled::actuator::Actuation;
 
@@ -48,6 +48,34 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         [is_off, false]
     }
 
+    /// Whether a rate stands still while what it is of turns.
+    ///
+    /// # Errors
+    /// The rate that is to be left out.
+    #[inline]
+    pub(super) fn check_rates(&mut self, state: &State<T>) -> Result<(), Channel> {
+        let (last, [body, rod]) = (self.sampler.state(), &self.stuck);
+        let is_due = body.is_due(&state.body_rate, &last.body_rate) || rod.is_due(&state.rod_rate, &last.rod_rate);
+        if is_due { self.watch_rates(state) } else { Ok(()) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn watch_rates(&mut self, state: &State<T>) -> Result<(), Channel> {
+        let (last, period, [body, rod]) = (self.sampler.state(), self.sampler.period(), &mut self.stuck);
+        let turned = angle(&last.attitude, &state.attitude);
+        let channel = if body.watch(&state.body_rate, &last.body_rate, &turned, period) {
+            Channel::BodyRate
+        } else if rod.watch(&state.rod_rate, &last.rod_rate, &(state.rod - last.rod), period) {
+            Channel::RodRate
+        } else {
+            return Ok(());
+        };
+        // Nor was the last state one to carry on.
+        self.blind = self.blind.max(self.policy.coast);
+        Err(channel)
+    }
+
     /// Whether load and UAV are a cable's length apart, in flight.
     fn is_hung(&self) -> bool {
         let is_flying = matches!(self.mode, Mode::Join | Mode::Follow | Mode::Hold | Mode::Land);
@@ -84,7 +112,8 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[cold]
     #[inline(never)]
     pub(super) fn mended(&mut self, fault: Fault, measured: &Measured<'_, T>) -> Option<Output<T>> {
-        let (Fault::State(channel), mut state) = (fault, *measured.state?) else { return None };
+        let Fault::State(channel @ (Channel::Attitude | Channel::BodyRate)) = fault else { return None };
+        let mut state = *measured.state?;
         if !self.mend(&mut state, channel) {
             return None;
         }
