@@ -16,23 +16,23 @@ const FORGOTTEN: f64 = 0.3;
 /// The watch on a rate that stands still: a driver that gives its last reading again, or none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stuck<T> {
+    is_stuck: bool,
     rate: Vector3<T>,
     /// What has turned else than by that, rad.
     turned: Vector3<T>,
-    is_stuck: bool,
 }
 
 impl<T: Real> Stuck<T> {
     /// Nothing stands still.
     pub(crate) fn none() -> Self {
-        Self { rate: Vector3::zeros(), turned: Vector3::zeros(), is_stuck: false }
+        Self { is_stuck: false, rate: Vector3::zeros(), turned: Vector3::zeros() }
     }
 
-    /// Whether there is something to [watch](Self::watch): the `rate` is the `last` one again, or
-    /// was not believed then.
+    /// Whether there is something to [watch](Self::watch): the `rate` is the `last` one again though
+    /// something `has_turned`, or was not believed then.
     #[inline]
-    pub(crate) fn is_due(&self, rate: &Vector3<T>, last: &Vector3<T>) -> bool {
-        rate.x == last.x || self.is_stuck
+    pub(crate) fn is_due(&self, rate: &Vector3<T>, last: &Vector3<T>, has_turned: impl FnOnce() -> bool) -> bool {
+        self.is_stuck || rate.x == last.x && has_turned()
     }
 
     /// Whether `rate` is to be left out, when there was a `last` one a `period` (s) ago and what it

@@ -89,6 +89,8 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     /// Time without a good state, and of calm in hold, s.
     blind: T,
     calm: T,
+    /// Of body and rod.
+    stuck: [Stuck<T>; 2],
     envelope: Envelope<T>,
     cable: Cable<T>,
     payload: Payload<T>,
@@ -104,8 +106,6 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
     motion: Motion<T>,
-    /// Of body and rod.
-    stuck: [Stuck<T>; 2],
     /// For how long the attitude has been led by body rates alone, s.
     led: T,
 }

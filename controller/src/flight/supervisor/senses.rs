@@ -55,8 +55,16 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline]
     pub(super) fn check_rates(&mut self, state: &State<T>) -> Result<(), Channel> {
         let (last, [body, rod]) = (self.sampler.state(), &self.stuck);
-        let is_due = body.is_due(&state.body_rate, &last.body_rate) || rod.is_due(&state.rod_rate, &last.rod_rate);
-        if is_due { self.watch_rates(state) } else { Ok(()) }
+        // Tilted: a yaw alone does not fall.
+        let has_turned = || state.attitude.m32 != last.attitude.m32 || state.attitude.m31 != last.attitude.m31;
+        let has_swung = || state.rod.x != last.rod.x || state.rod.y != last.rod.y;
+        if body.is_due(&state.body_rate, &last.body_rate, has_turned)
+            || rod.is_due(&state.rod_rate, &last.rod_rate, has_swung)
+        {
+            self.watch_rates(state)
+        } else {
+            Ok(())
+        }
     }
 
     #[cold]
