@@ -12,6 +12,8 @@ pub(crate) const LED: f64 = 5.0;
 /// by this much else than it says, rad, which is forgotten over this time, s.
 const TURNED: f64 = 0.03;
 const FORGOTTEN: f64 = 0.3;
+/// What turns faster than this, rad/s, has jumped.
+const FASTEST: f64 = 10.0;
 
 /// The watch on a rate that stands still: a driver that gives its last reading again, or none.
 #[derive(Clone, Copy, Debug)]
@@ -39,16 +41,11 @@ impl<T: Real> Stuck<T> {
     /// is of has `turned`, rad.
     #[inline(never)]
     pub(crate) fn watch(&mut self, rate: &Vector3<T>, last: &Vector3<T>, turned: &Vector3<T>, period: T) -> bool {
-        let is_same = *rate == self.rate;
-        if self.is_stuck && is_same {
-            return true;
-        }
-        if self.is_stuck || !is_same || rate != last {
+        let most = period * T::lit(FASTEST);
+        if *rate != self.rate || !self.is_stuck && (rate != last || !is_within(turned, most * most)) {
             *self = Self { rate: *rate, ..Self::none() };
-        }
-        if rate == last {
-            let else_than_said = turned - rate * period;
-            self.turned += else_than_said - self.turned * (period * T::lit(1.0 / FORGOTTEN));
+        } else if !self.is_stuck {
+            self.turned += turned - rate * period - self.turned * (period * T::lit(1.0 / FORGOTTEN));
             self.is_stuck = !is_within(&self.turned, T::lit(TURNED * TURNED));
         }
         self.is_stuck

@@ -290,6 +290,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn begin(&mut self, state: &State<T>, thrust: T) {
         self.motion.forget();
+        self.stuck = [Stuck::none(); 2];
         self.cable.begin(self.sampler.vehicle(), state, thrust);
         self.payload.leave();
         self.trim = Vector3::zeros();

@@ -39,8 +39,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             return [false, true];
         }
         let line = state.position - uav.position;
-        let is_off =
-            load_is_off && !uav_is_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod);
+        // A take-off does not fly by the load, which an estimate may only just have found.
+        let is_alone_off = load_is_off && !uav_is_off && self.mode != Mode::TakeOff;
+        let is_off = is_alone_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod);
         if is_off {
             // Nor was the last state one to carry on.
             self.blind = self.blind.max(self.policy.coast);
