@@ -85,6 +85,11 @@ impl<T: Real> Bounce<T> {
     pub(crate) fn mean(&self) -> T {
         self.mean
     }
+
+    /// Whether the mean is one of enough time.
+    pub(crate) fn has_mean(&self) -> bool {
+        self.averaged >= T::lit(AVERAGED)
+    }
 }
 
 /// The slowest frequency that is seen of this `vehicle`, rad/s.

@@ -268,14 +268,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.soften();
     }
 
-    /// A law begins to fly. Along the rod it starts from the usual, and follows slowly until no bounce
-    /// on the cable has been seen for a while: it would have grown too large by then.
+    /// A law begins to fly. Along the rod it starts from the usual, where hold has found that, and
+    /// follows slowly until no bounce on the cable has been seen for a while: it would have grown too
+    /// large by then.
     #[cold]
     #[inline(never)]
     pub(crate) fn join(&mut self, state: &State<T>) {
         let Memory { vehicle, weighed, weight, bounce, observer, last, actuators, .. } = &mut self.memory;
-        let lambda = lambda(weighed, last, actuators.applied().thrust);
-        observer.slow(slowest(vehicle), &last.rod, weight.along(bounce.mean(), lambda));
+        if bounce.has_mean() {
+            let lambda = lambda(weighed, last, actuators.applied().thrust);
+            observer.slow(slowest(vehicle), &last.rod, weight.along(bounce.mean(), lambda));
+        }
         self.carry_on(state);
     }
 
