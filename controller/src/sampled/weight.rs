@@ -59,9 +59,10 @@ impl<T: Real> Weight<T> {
         (self.flown * lambda / (lambda + along)).clamp(T::zero(), T::lit(10.0))
     }
 
-    /// d·q, m/s², that implies a `share`.
+    /// d·q, m/s², that implies a `share`, of those that are flown on.
     pub(crate) fn along(&self, share: T, lambda: T) -> T {
-        lambda * (self.flown / share - T::one())
+        let (least, most) = FLOWN;
+        lambda * (self.flown / share.clamp(T::lit(least), T::lit(most)) - T::one())
     }
 
     /// The share implied at the last sample.
