@@ -43,7 +43,7 @@ def test_the_law_flies_on_what_the_filters_find():
 
 def test_a_pair_shows_the_rod_whatever_navigation_makes_of_the_place():
     """Navigation is half a metre off. Motion capture that sees both bodies finds the rod within its own millimetres; the load's place alone
-    is taken against the wrong hook, and turns the rod by 0.25 rad less what the accelerometer says."""
+    is taken against the wrong hook, and turns the rod by 0.25 rad less what the accelerometer says: ten times a pair's error is left."""
     parameters = slung.Parameters(CTL_PERIOD=0.002)
     scenario = slung.Scenario(
         path={"kind": "circle", "radius": 5.0, "p3": -10.0, "speed": 1.0},
@@ -56,7 +56,7 @@ def test_a_pair_shows_the_rod_whatever_navigation_makes_of_the_place():
     for seen in ("both", "load"):
         load = slung.PayloadFilter(parameters)
         place = true.position + [0.0, 0.0, 2.0]
-        for _ in range(1000):
+        for _ in range(400):
             estimate = load.step(off, [0.0, 0.0, -9.81], HOVER)
             if seen == "both":
                 assert load.observe_pair(place, true.position, 0.001)
@@ -65,4 +65,4 @@ def test_a_pair_shows_the_rod_whatever_navigation_makes_of_the_place():
         rods[seen] = abs(estimate.state.rod[0])
     assert not load.observe_pair(place, [np.nan, 0.0, 0.0], 0.001)
     assert rods["both"] < 0.002, rods
-    assert rods["load"] > 0.1, rods
+    assert rods["load"] > 0.02, rods
