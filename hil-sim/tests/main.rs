@@ -11,6 +11,7 @@ mod formula;
 mod ground;
 mod gusts;
 mod hunt;
+mod instruments;
 mod keys;
 mod mission;
 mod multibody;

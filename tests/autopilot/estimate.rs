@@ -7,7 +7,7 @@ use estimator::Validity;
 use hil_sim::describe::parameters::parameters;
 use hil_sim::describe::scenario::Scenario;
 use hil_sim::world::random::{Purpose, Stream};
-use hil_sim::world::sensors::gnss::FixReading;
+use hil_sim::world::sensors::gnss::{FixReading, Solution};
 use hil_sim::world::{InstrumentModel, Readings, Seed, World};
 use link::MavMessage;
 use link::dialect::*;
@@ -347,6 +347,88 @@ fn a_state_of_the_load_that_is_sent_goes_first() {
     assert_eq!(autopilot.absence(), None);
     autopilot.tick();
     assert_eq!(autopilot.absence(), Some(Absence::Unseen(Unseen::Rod(Validity::Converging))));
+}
+
+/// A receiver 30 m north, 40 m west and 5 m above the place, and whose fix that is.
+fn fix_aside() -> MavMessage {
+    let aside = Vector3::new(30.0, -40.0, -5.0);
+    let fix = FixReading {
+        position: aside,
+        velocity: Vector3::zeros(),
+        position_accuracy: [0.01, 0.016],
+        velocity_accuracy: [0.03, 0.05],
+        age: 0.1,
+        solution: Solution::Fixed,
+    };
+    gps_input(&fix)
+}
+
+#[test]
+fn n_has_its_origin_at_home_and_without_one_at_the_first_fix() {
+    for has_home in [true, false] {
+        let mut autopilot = Autopilot::new(Boot::default());
+        let settings = autopilot.settings_mut().unwrap();
+        settings.set_by_name("EST_LOAD", 2.0).unwrap();
+        let mut station = Station::new(autopilot);
+        if has_home {
+            let [latitude, longitude] = PLACE.map(|degrees| (degrees * 1e7).round() as i32);
+            let origin = SET_GPS_GLOBAL_ORIGIN_DATA {
+                latitude,
+                longitude,
+                altitude: 432_100,
+                target_system: 1,
+                ..SET_GPS_GLOBAL_ORIGIN_DATA::DEFAULT
+            };
+            station.say(&MavMessage::SET_GPS_GLOBAL_ORIGIN(origin));
+        }
+        // Level, with the field to the north.
+        for _ in 0..300 {
+            station.say(&MavMessage::HIGHRES_IMU(HIGHRES_IMU_DATA {
+                zacc: -9.81,
+                xmag: 0.4,
+                zmag: 0.8,
+                fields_updated: 0b1_1111_1111,
+                ..HIGHRES_IMU_DATA::DEFAULT
+            }));
+            station.say(&fix_aside());
+            station.autopilot.tick();
+        }
+        let place = station.autopilot.uav().expect("navigation has begun").position;
+        let wanted = if has_home { Vector3::new(30.0, -40.0, -5.0) } else { Vector3::zeros() };
+        // A unit of the message is 1.1 cm, and home's height above the ellipsoid 7e-5 of a length.
+        assert!((place - wanted).amax() < 0.02, "{place}");
+    }
+}
+
+#[test]
+fn what_a_line_brings_twice_counts_once() {
+    let moved = |repeats: usize| {
+        let mut field = Field::new(scenario(""), 2.0, 7);
+        field.pass(1.0, &mut |_| {});
+        for step in 0..50_u64 {
+            let mut said = vec![MavMessage::HIGHRES_IMU(HIGHRES_IMU_DATA {
+                time_usec: 1 + 2_000 * step,
+                // Another one each time: twice the one would shift the mean.
+                xacc: 0.01 * step as f32,
+                zacc: -9.81,
+                fields_updated: 0b11_1111,
+                ..HIGHRES_IMU_DATA::DEFAULT
+            })];
+            if step.is_multiple_of(10) {
+                let MavMessage::GPS_INPUT(fix) = fix_aside() else { unreachable!() };
+                said.push(MavMessage::GPS_INPUT(GPS_INPUT_DATA { time_usec: 1 + 2_000 * step, ..fix }));
+            }
+            for message in &said {
+                field.station.say(message);
+            }
+            field.station.autopilot.tick();
+            // The answer was lost, and all of it comes again.
+            (0..repeats).for_each(|_| said.iter().for_each(|message| drop(field.station.say(message))));
+        }
+        let uav = field.station.autopilot.uav().expect("navigation has begun");
+        uav.position.map(f32::to_bits)
+    };
+    assert_eq!(moved(1), moved(0));
 }
 
 #[test]

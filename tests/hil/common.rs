@@ -37,6 +37,10 @@ impl<A: Answers> Answers for Recorded<A> {
         self.inner.lands()
     }
 
+    fn finds_its_state(&self) -> bool {
+        self.inner.finds_its_state()
+    }
+
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
         let decision = self.inner.step(read, request, t_s)?;
         let Decision { command, zeta, .. } = *decision;

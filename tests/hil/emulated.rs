@@ -79,6 +79,17 @@ fn a_mission_from_ground_to_ground_is_the_same_on_every_emulated_board() {
 }
 
 #[test]
+fn on_its_instruments_an_emulated_board_flies_as_the_program_here() {
+    // Up, found the rod, and on the path.
+    let scenario = scenario("on-instruments", 25.0);
+    let here = Target::connect(Endpoint::Here, None, OPTIONS).unwrap();
+    let (here, _) = fly_there(&scenario, here);
+    let [_, (machine, image), _] = images();
+    let (there, _) = fly_there(&scenario, emulated(machine, image, OPTIONS));
+    assert!(there.unwrap() == here.unwrap(), "another flight on {machine}");
+}
+
+#[test]
 fn a_route_is_uploaded_and_flown_to_its_end_on_an_emulated_board() {
     let (here, there) = UnixStream::pair().expect("sockets");
     std::thread::spawn(move || hil_sim::hil::serve(there));

@@ -124,6 +124,58 @@ fn noise_changes_nothing_but_the_time_it_takes() {
     assert!(target.statistics().repeats > 100, "the line was not noisy: {} repeats", target.statistics().repeats);
 }
 
+/// Loses each seventh write and each eleventh read, whole.
+struct Lossy {
+    stream: UnixStream,
+    turns: [u32; 2],
+}
+
+impl Read for Lossy {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        loop {
+            let count = self.stream.read(bytes)?;
+            self.turns[0] += 1;
+            if count == 0 || !self.turns[0].is_multiple_of(11) {
+                return Ok(count);
+            }
+        }
+    }
+}
+
+impl Write for Lossy {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.turns[1] += 1;
+        if !self.turns[1].is_multiple_of(7) {
+            self.stream.write_all(bytes)?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+impl Wire for Lossy {
+    fn set_patience(&mut self, patience: Duration) -> io::Result<()> {
+        self.stream.set_patience(patience)
+    }
+}
+
+/// What instruments say goes with the state, is lost with it, and counts once however often it
+/// comes.
+#[test]
+fn on_instruments_a_question_that_is_lost_changes_nothing() {
+    let scenario = scenario("on-instruments", 3.0);
+    let whole = Target::connect(Endpoint::Here, None, OPTIONS).unwrap();
+    let (whole, _) = fly_there(&scenario, whole);
+    let options = Options { retry: Duration::from_millis(4), ..OPTIONS };
+    let (commands, target) =
+        fly_there(&scenario, soft_target(options, |stream| Lossy { stream, turns: [0; 2] }).unwrap());
+    assert!(commands.unwrap() == whole.unwrap(), "another flight");
+    assert!(target.statistics().repeats > 200, "{} repeats", target.statistics().repeats);
+}
+
 /// Loses each tenth of what the target says whole reads at a time, if it is telemetry.
 struct Deaf {
     stream: UnixStream,

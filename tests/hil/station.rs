@@ -58,8 +58,8 @@ fn a_ground_station_arms_a_vehicle_that_nothing_else_commands() {
     let scenario = scenario(STATION, FLOWN_S);
     let home = Home { latitude: -33.9, longitude: 18.4, altitude: 50.0 };
     let options = Options { pace: Pace::RealTime, ..OPTIONS };
-    let mut target = Target::connect(Endpoint::Here, None, options).unwrap();
-    target.leave_to(station, &scenario, home).unwrap();
+    let mut target = Target::connect(Endpoint::Here, None, options).unwrap().at(home);
+    target.leave_to(station, &scenario).unwrap();
     let begun = Instant::now();
     let flight = run::fly_watched(&scenario, &mut target, false, Control::alone(), &mut |_| {}).unwrap();
     assert_eq!(flight.end, End::Complete);

@@ -84,6 +84,9 @@ impl Autopilot {
     pub(crate) fn set_home(&mut self, home: Home) -> Result<(), &'static str> {
         if self.mission.home() != Some(&home) {
             self.mission_mut().ok_or("home: not while armed")?.0.set_home(home);
+            self.navigation.instruments_mut().set_home(&home);
+            // What it has found is counted from another place.
+            self.estimator = None;
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, L
 use rig::{Output, Rig, parameter};
 
 use super::{Absence, Answer, Autopilot, Drive, Notice};
-use crate::estimate::{Estimator, Found, Unseen};
+use crate::estimate::{Estimator, Found, Unseen, params};
 use crate::mission::Flown;
 use crate::report;
 use crate::seen::Seen;
@@ -64,7 +64,7 @@ impl Autopilot {
             // Armed and never started: after a reset, say, that the sender has not noticed.
             return self.out_of_step(frame);
         }
-        if self.estimator.is_some() {
+        if params::source(&self.settings).is_some() {
             self.pass();
         }
         let answer = self.control(Some(frame));

@@ -3,6 +3,7 @@
 
 use controller::{Real, Vector3};
 use estimator::Fix;
+use link::Home;
 use link::dialect::{GPS_INPUT_DATA, GPS_RAW_INT_DATA, HIGHRES_IMU_DATA};
 
 /// Bits of HIGHRES_IMU.fields_updated.
@@ -38,7 +39,7 @@ pub struct Inertial {
     pub specific_force: Vector3<f32>,
 }
 
-/// Where N has its origin, which is the place of the first fix.
+/// Where N has its origin: at home, or where none was told at the first fix.
 #[derive(Clone, Copy, Debug)]
 struct Origin {
     latitude: i32,
@@ -46,6 +47,37 @@ struct Origin {
     altitude_m: f32,
     /// Metres for a unit of latitude and of longitude.
     scale: [f32; 2],
+    /// How much meridians draw together a metre north, 1/m.
+    bend: f32,
+}
+
+impl Origin {
+    /// At a latitude and longitude in units, m above the sea.
+    fn new(latitude: i32, longitude: i32, altitude_m: f32) -> Self {
+        let (sin, cos) = Real::sin_cos(latitude as f32 * UNIT);
+        let short = 1.0 - ECCENTRICITY * sin * sin;
+        let across = RADIUS_M / Real::sqrt(short);
+        let along = across * (1.0 - ECCENTRICITY) / short + altitude_m;
+        let across = across + altitude_m;
+        Self {
+            latitude,
+            longitude,
+            altitude_m,
+            scale: [along * UNIT, across * cos * UNIT],
+            bend: sin / (cos * across),
+        }
+    }
+
+    /// In N, m: what [`Home::place`] makes of it there, to the second order of the distance.
+    fn local(&self, latitude: i32, longitude: i32, altitude_m: f32) -> Vector3<f32> {
+        let turn = 3_600_000_000_i64;
+        let east = (i64::from(longitude) - i64::from(self.longitude) + turn / 2).rem_euclid(turn) - turn / 2;
+        let north = i64::from(latitude) - i64::from(self.latitude);
+        let [per_north, per_east] = self.scale;
+        let north = north as f32 * per_north;
+        let east = east as f32 * per_east * (1.0 - self.bend * north);
+        Vector3::new(north + 0.5 * self.bend * east * east, east, self.altitude_m - altitude_m)
+    }
 }
 
 /// What has come and was not taken yet.
@@ -62,6 +94,8 @@ pub struct Instruments {
     height: Option<f32>,
     since_slow_s: f32,
     origin: Option<Origin>,
+    /// Stamps of the last IMU and fix that were taken, µs.
+    stamps: [u64; 2],
 }
 
 impl Instruments {
@@ -76,11 +110,23 @@ impl Instruments {
             height: None,
             since_slow_s: 0.0,
             origin: None,
+            stamps: [0; 2],
         }
+    }
+
+    /// N has its origin at `home` from now on.
+    pub fn set_home(&mut self, home: &Home) {
+        let [latitude, longitude] = [home.latitude, home.longitude].map(|degrees| libm::round(degrees * 1e7) as i32);
+        self.origin = Some(Origin::new(latitude, longitude, home.altitude as f32));
+        self.fix = None;
     }
 
     /// HIGHRES_IMU. Returns the specific force, if it is new.
     pub fn hear_imu(&mut self, message: &HIGHRES_IMU_DATA) -> Option<Vector3<f32>> {
+        let [newest, _] = &mut self.stamps;
+        if is_again(newest, message.time_usec) {
+            return None;
+        }
         let has = |bits: u16| message.fields_updated & bits == bits;
         if has(GYRO) {
             self.body_rate = Some(Vector3::new(message.xgyro, message.ygyro, message.zgyro));
@@ -105,6 +151,10 @@ impl Instruments {
         if message.fix_type < THREE_DIMENSIONS || !has(NO_ALTITUDE) || !is_latitude(message.lat) {
             return;
         }
+        let [_, newest] = &mut self.stamps;
+        if is_again(newest, message.time_usec) {
+            return;
+        }
         let both = |stated: [f32; 2], bits, unstated| if has(bits) { stated } else { unstated };
         let speed = message.speed_accuracy;
         self.fix = Some(Fix {
@@ -120,6 +170,10 @@ impl Instruments {
     /// GPS_RAW_INT: the same without a velocity, of which it has two components only.
     pub fn hear_gps_raw(&mut self, message: &GPS_RAW_INT_DATA) {
         if message.fix_type < THREE_DIMENSIONS || !is_latitude(message.lat) {
+            return;
+        }
+        let [_, newest] = &mut self.stamps;
+        if is_again(newest, message.time_usec) {
             return;
         }
         let stated = [message.h_acc, message.v_acc];
@@ -141,20 +195,10 @@ impl Instruments {
         }
     }
 
-    /// In N, m. The first place is the origin.
+    /// In N, m. Where no home was told, the first place is the origin.
     fn place(&mut self, latitude: i32, longitude: i32, altitude_m: f32) -> Vector3<f32> {
-        let origin = self.origin.get_or_insert_with(|| {
-            let (sin, cos) = Real::sin_cos(latitude as f32 * UNIT);
-            let short = 1.0 - ECCENTRICITY * sin * sin;
-            let across = RADIUS_M / Real::sqrt(short);
-            let scale = [across * (1.0 - ECCENTRICITY) / short * UNIT, across * cos * UNIT];
-            Origin { latitude, longitude, altitude_m, scale }
-        });
-        let turn = 3_600_000_000_i64;
-        let east = (i64::from(longitude) - i64::from(origin.longitude) + turn / 2).rem_euclid(turn) - turn / 2;
-        let north = i64::from(latitude) - i64::from(origin.latitude);
-        let [per_north, per_east] = origin.scale;
-        Vector3::new(north as f32 * per_north, east as f32 * per_east, origin.altitude_m - altitude_m)
+        let origin = self.origin.get_or_insert_with(|| Origin::new(latitude, longitude, altitude_m));
+        origin.local(latitude, longitude, altitude_m)
     }
 
     /// What the IMU said since the last call, if it said anything.
@@ -184,6 +228,12 @@ impl Instruments {
         self.since_slow_s = 0.0;
         (self.field.take(), self.height.take())
     }
+}
+
+/// Whether a message has the stamp of the last one, as one that a line brings twice does; of 0 there
+/// is none.
+fn is_again(newest: &mut u64, stamp: u64) -> bool {
+    stamp != 0 && core::mem::replace(newest, stamp) == stamp
 }
 
 fn is_latitude(latitude: i32) -> bool {

@@ -19,6 +19,7 @@ pub const EXAMPLES: &str = "Examples:
   hil-sim hil fig3a --port /dev/ttyUSB0 --real-time --live    and watch it in a browser
   hil-sim hil fig3a --connect udp:192.168.1.7:14550    over a wireless bridge
   hil-sim hil fig3a --emulate firmware/target/thumbv7em-none-eabihf/release/firmware
+  hil-sim hil on-instruments --connect here            on its IMU and receiver: the flight program finds the load itself
   hil-sim hil --station                                a vehicle for QGroundControl, MAVProxy, …, without a board
   hil-sim hil my.toml --station=192.168.1.7:14550 --home 53.527,-113.529,668    for one elsewhere
   hil-sim hil --station --port /dev/ttyUSB0            the vehicle simulated, the flight program on a board";

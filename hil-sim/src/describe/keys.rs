@@ -894,6 +894,13 @@ pub const SECTIONS: &[Section] = &[
                 "(0.4 rad, 0.8 1/s)",
                 "Standard deviations of rod and rate at the start.",
             ),
+            key(
+                "navigation",
+                "",
+                Word(&["own", "other"]),
+                "\"own\"",
+                "Of `hil-sim hil`: the target's own, from IMU and receiver, or another's, by messages.",
+            ),
         ],
     },
     Section {

@@ -159,6 +159,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
     let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
     let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
     let is_commanded = pilot.is_commanded();
+    let finds_its_state = pilot.finds_its_state();
     let distance_at = |step: u64, state: &State<f64>| {
         (!is_commanded && step.is_multiple_of(plan.distance_every)).then(|| distance_of(state))
     };
@@ -234,7 +235,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
             request,
             distance_m,
             decision: Some(decision),
-            sight: sight.as_ref(),
+            sight: sight.as_ref().filter(|_| !finds_its_state),
             ..Moment::of(step, &world, &state, &ground)
         });
         if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() && !is_commanded {

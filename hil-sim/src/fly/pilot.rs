@@ -33,6 +33,11 @@ pub trait Answers {
         false
     }
 
+    /// Whether it finds the state itself, from what is [aboard](Reading::aboard).
+    fn finds_its_state(&self) -> bool {
+        false
+    }
+
     /// The command for the hold that begins at `t_s`, from what is read then and what is asked for;
     /// `None` if there will be no more.
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision>;

@@ -12,7 +12,7 @@ use crate::describe::scenario::{EstimatorSpec, Scenario};
 use crate::world::random::Purpose;
 use crate::world::sensors::gnss::FixReading;
 use crate::world::sensors::mocap::PoseReading;
-use crate::world::{InstrumentModel, Reading, Seed, World};
+use crate::world::{Aboard, InstrumentModel, Reading, Seed, World};
 
 /// Motion capture's own word on its accuracy: a little more than its noise, since its frames are
 /// not all independent.
@@ -184,6 +184,7 @@ impl Sight {
             sees_load: self.has_found,
             uav: Some(estimate.beside(&uav).cast()),
             specific_force: Some(specific_force.map(f64::from)),
+            aboard: Some(Aboard { readings, motion }),
         };
         &mut self.reading
     }

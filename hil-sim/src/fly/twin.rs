@@ -89,6 +89,10 @@ impl Answers for Twinned<'_> {
         self.pilot.is_commanded()
     }
 
+    fn finds_its_state(&self) -> bool {
+        self.pilot.finds_its_state()
+    }
+
     fn lands(&self) -> bool {
         self.pilot.lands()
     }

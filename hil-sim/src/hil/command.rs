@@ -16,6 +16,9 @@ use crate::fly::flight::{Control, End};
 use crate::fly::run;
 use crate::fly::sample::Sample;
 
+/// Where N has its origin unless it is told otherwise, LAT,LON,ALT.
+pub const HOME: &str = "53.527,-113.529,668";
+
 /// Where the target is: one of these; or, for a ground station, in this program.
 #[derive(Args, Clone, Debug)]
 #[group(multiple = false)]
@@ -69,9 +72,9 @@ pub struct Arguments {
     /// on the wall until Ctrl-C, or the scenario's end.
     #[arg(long, value_name = "HOST:PORT", num_args = 0..=1, require_equals = true, default_missing_value = USUAL)]
     pub station: Option<String>,
-    /// Where on the earth N has its origin, for a ground station: latitude and longitude in
-    /// degrees, height in m above the sea.
-    #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true, default_value = "53.527,-113.529,668", requires = "station")]
+    /// Where on the earth N has its origin, for a ground station and a receiver: latitude and
+    /// longitude in degrees, height in m above the sea.
+    #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true, default_value = HOME)]
     pub home: Home,
     /// Seconds without an answer after which the target is lost.
     #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = patience)]
@@ -178,8 +181,9 @@ pub fn fly_all(
         (.., Some(image)) => Target::emulated(Emulator::start(&arguments.machine, image, arguments.count)?, options)?,
         _ if station.is_some() => Target::connect(Endpoint::Here, None, options)?,
         _ => return Err(HilError::NoTarget),
-    };
-    let mut station = station.map(|station| (station, arguments.home));
+    }
+    .at(arguments.home);
+    let mut station = station;
     let mut flown = Flown { outcomes: Vec::new(), links: Vec::new(), failure: None };
     for scenario in scenarios {
         match fly_one(&mut target, scenario, station.take(), (options.telemetry, control), see, &mut flown) {
@@ -199,17 +203,19 @@ pub fn fly_all(
 fn fly_one(
     target: &mut Target,
     scenario: Scenario,
-    station: Option<(Station, Home)>,
+    station: Option<Station>,
     (twin, control): (bool, Control<'_>),
     see: &mut See<'_>,
     flown: &mut Flown,
 ) -> Result<bool, HilError> {
     let is_commanded = station.is_some();
     match station {
-        Some((station, home)) => target.leave_to(station, &scenario, home)?,
+        Some(station) => target.leave_to(station, &scenario)?,
         None => target.prepare(&scenario)?,
     }
     let begun = Instant::now();
+    // A twin is asked at the states that are sent.
+    let twin = twin && scenario.estimator.is_none();
     let mut flight = run::fly_watched(&scenario, target, twin, control, &mut |log| see(&scenario, log, None))
         .map_err(|error| HilError::Unsupported(error.to_string()))?;
     see(&scenario, &flight.log, Some(flight.end));

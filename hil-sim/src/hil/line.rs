@@ -72,10 +72,11 @@ impl Line {
         HilError::Lost { endpoint: self.endpoint.clone(), waited: since.elapsed(), sent }
     }
 
-    /// Sends `question`, again and again if need be, until `answer` finds one or the patience ends.
+    /// Sends `question`, all of it again and again if need be, until `answer` finds one or the
+    /// patience ends.
     pub fn ask<T>(
         &mut self,
-        question: &MavMessage,
+        question: &[MavMessage],
         answer: impl Fn(&MavMessage) -> Option<T>,
     ) -> Result<T, HilError> {
         let begun = Instant::now();
@@ -123,9 +124,13 @@ impl Line {
         if bytes.is_empty() { Ok(()) } else { self.write(&bytes) }
     }
 
-    pub fn transmit(&mut self, message: &MavMessage) -> Result<(), HilError> {
-        let frame = self.encoder.frame(message);
-        self.write(frame.bytes())
+    /// At once.
+    pub fn transmit(&mut self, messages: &[MavMessage]) -> Result<(), HilError> {
+        let mut bytes = Vec::new();
+        for message in messages {
+            bytes.extend_from_slice(self.encoder.frame(message).bytes());
+        }
+        self.write(&bytes)
     }
 
     fn write(&mut self, bytes: &[u8]) -> Result<(), HilError> {

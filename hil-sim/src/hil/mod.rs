@@ -9,6 +9,9 @@
 //! same frame is sent again, and the target answers the same number with the same command. So
 //! neither a slow host, nor a noisy line, nor a line that was cut and is back changes any result.
 //!
+//! A scenario with an estimator is flown on the vehicle's [instruments]: they are sent before each
+//! state frame, which is then empty, and the target finds navigation and load by itself.
+//!
 //! A [`Station`] may command the target in place of a scenario's requests: what it says goes to the
 //! target, what the target says to it, and here is only what the vehicle would be.
 
@@ -16,6 +19,7 @@ mod command;
 mod datagrams;
 mod emulator;
 mod error;
+mod instruments;
 mod line;
 mod mission;
 mod options;
@@ -25,7 +29,7 @@ mod statistics;
 mod target;
 mod wire;
 
-pub use command::{Arguments, Flown, LinkReport, See, fly_all, lateness, table};
+pub use command::{Arguments, Flown, HOME, LinkReport, See, fly_all, lateness, table};
 pub use emulator::Emulator;
 pub use error::HilError;
 pub use options::{Options, Pace};

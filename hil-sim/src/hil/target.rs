@@ -8,8 +8,10 @@ use link::dialect::*;
 use link::{Home, MavMessage};
 use rig::{Refused, parameter, run};
 
+use super::instruments::Instruments;
 use super::line::Line;
-use super::{Emulator, Endpoint, HilError, Options, Pace, Station, Statistics, Wire, mission};
+use super::{Emulator, Endpoint, HOME, HilError, Options, Pace, Station, Statistics, Wire, mission};
+use crate::describe::mission::home;
 use crate::describe::parameters::parameters;
 use crate::describe::scenario::{ControllerSpec, Law, Scenario};
 use crate::fly::pilot::{Answers, Decision, Observed, Telemetry};
@@ -22,9 +24,12 @@ enum Begin {
     Begun,
     /// On the path, with this ζ.
     On([f64; 4]),
-    /// On the ground.
+    /// On the ground, until it has found that it is.
     Standing,
 }
+
+/// Navigation that has not begun after so long, s, has nothing to begin with.
+const BEGINS_S: f64 = 10.0;
 
 /// A flight by the clock on the wall that falls further behind goes on from there.
 const MOST_BEHIND: Duration = Duration::from_millis(100);
@@ -35,6 +40,11 @@ pub struct Target {
     sequence: u32,
     period: Duration,
     begin: Begin,
+    /// Where on the earth N has its origin.
+    home: Home,
+    /// What it finds its state from, where it does, and what they say in this period.
+    instruments: Option<Instruments>,
+    said: Vec<MavMessage>,
     /// What was asked for last.
     request: Request,
     /// It has landed, and is disarmed.
@@ -90,6 +100,9 @@ impl Target {
             sequence: 0,
             period: Duration::ZERO,
             begin: Begin::Begun,
+            home: home(HOME).expect("it is a place"),
+            instruments: None,
+            said: Vec::new(),
             request: Request::Idle,
             is_down: false,
             lands: false,
@@ -117,6 +130,12 @@ impl Target {
             }
             Err(error) => Err(error),
         }
+    }
+
+    /// The same with N's origin at `home` on the earth, for receivers and ground stations.
+    #[must_use]
+    pub fn at(self, home: Home) -> Self {
+        Self { home, ..self }
     }
 
     /// What the link and the target did since the last [`prepare`](Self::prepare).
@@ -147,24 +166,29 @@ impl Target {
     /// # Errors
     /// The scenario can't be flown there, or the target or the line fails.
     pub fn prepare(&mut self, scenario: &Scenario) -> Result<(), HilError> {
-        self.set_up(scenario, None)?;
+        self.set_up(scenario, false)?;
+        if self.instruments.is_some() && !scenario.standing {
+            // It is armed in flight, with a load that hangs.
+            self.ask_for(Request::Hold)?;
+            self.request = Request::Hold;
+        }
         self.arm(true)
     }
 
-    /// Sets the target up for `scenario`, about `home` on the earth, and leaves it to `station`,
-    /// which arms it and asks for modes. Flights go by the clock on the wall.
+    /// Sets the target up for `scenario` and leaves it to `station`, which arms it and asks for
+    /// modes. Flights go by the clock on the wall.
     ///
     /// # Errors
     /// The scenario can't be flown there, or the target or the line fails.
-    pub fn leave_to(&mut self, station: Station, scenario: &Scenario, home: Home) -> Result<(), HilError> {
-        self.set_up(scenario, Some(home))?;
+    pub fn leave_to(&mut self, station: Station, scenario: &Scenario) -> Result<(), HilError> {
+        self.set_up(scenario, true)?;
         // Whatever the station sets them to.
         self.limits = (f32::MAX, [f32::MAX; 3]);
         self.line.station = Some(station);
         Ok(())
     }
 
-    fn set_up(&mut self, scenario: &Scenario, home: Option<Home>) -> Result<(), HilError> {
+    fn set_up(&mut self, scenario: &Scenario, is_commanded: bool) -> Result<(), HilError> {
         let ControllerSpec { law, rate_hz, rate_loop_s, .. } = &scenario.controller;
         if rate_loop_s.is_some() {
             return Err(HilError::Unsupported("actuators.rate_loop: the target commands rotors".into()));
@@ -181,21 +205,23 @@ impl Target {
         let simulate = if self.line.options().pace == Pace::Lockstep { 1.0 } else { 2.0 };
         let unsupported = |refused: Refused<f32>| HilError::Unsupported(refused.to_string());
         settings.set(Setting::DRIVE, simulate).map_err(unsupported)?;
-        if home.is_none() {
+        self.instruments = Instruments::of(scenario, self.home, &mut settings)?;
+        self.said.clear();
+        if !is_commanded {
             // What the vehicle can give has been compared with what its path asks for.
             settings.set(Setting::ARMING_THRUST, 1.0).map_err(unsupported)?;
             // With the states that ask for it.
             settings.set(Setting::TELEMETRY_EVERY, 0.0).map_err(unsupported)?;
         }
         self.arm(false)?;
-        if let Some(home) = home {
-            self.set_home(home)?;
+        if is_commanded || self.instruments.is_some() {
+            self.set_home(self.home)?;
         }
         if let Some(route) = law.route() {
             mission::set_pace(route, &mut settings).map_err(unsupported)?;
             self.configure(&settings)?;
             let items = mission::items(route)?;
-            self.upload(&home.map_or_else(|| items.clone(), |home| mission::on_earth(&items, home)))?;
+            self.upload(&if is_commanded { mission::on_earth(&items, self.home) } else { items })?;
         } else {
             self.configure(&settings)?;
         }
@@ -226,7 +252,10 @@ impl Target {
             Pace::Lockstep => self.lockstep(measured, t_s),
             Pace::RealTime => self.real_time(measured, t_s),
         }?;
-        self.is_down = decision.mode == Mode::Off;
+        if self.begin == Begin::Standing && self.instruments.is_some() && t_s > BEGINS_S {
+            return Err(HilError::Refused("navigation has not begun: no fix, or no heading".into()));
+        }
+        self.is_down = decision.mode == Mode::Off && self.begin != Begin::Standing;
         self.lands |= decision.mode == Mode::Land && request == Request::Follow;
         Ok(decision)
     }
@@ -262,7 +291,7 @@ impl Target {
             target_component: link::CONTROLLER.1,
             param_id: link::name(name),
         });
-        self.line.ask(&request, |message| named_value(message, name))
+        self.line.ask(&[request], |message| named_value(message, name))
     }
 
     /// Sets a parameter and makes sure of it.
@@ -277,7 +306,7 @@ impl Target {
             param_id: link::name(name),
             param_type: MavParamType::MAV_PARAM_TYPE_REAL32 as u8,
         });
-        let kept = self.line.ask(&request, |message| named_value(message, name))?;
+        let kept = self.line.ask(&[request], |message| named_value(message, name))?;
         if kept.to_bits() == value.to_bits() {
             return Ok(());
         }
@@ -295,7 +324,7 @@ impl Target {
             target_system: link::CONTROLLER.0,
             time_usec: 0,
         });
-        self.line.ask(&question, |message| matches!(message, MavMessage::GPS_GLOBAL_ORIGIN(_)).then_some(()))
+        self.line.ask(&[question], |message| matches!(message, MavMessage::GPS_GLOBAL_ORIGIN(_)).then_some(()))
     }
 
     fn configure(&mut self, settings: &Settings) -> Result<(), HilError> {
@@ -324,12 +353,12 @@ impl Target {
             ..MISSION_COUNT_DATA::DEFAULT
         });
         for (next, item) in (0..).zip(items) {
-            if let Some(result) = self.line.ask(&question, |message| wanted(message, next))? {
+            if let Some(result) = self.line.ask(&[question], |message| wanted(message, next))? {
                 return self.kept(result);
             }
             question = MavMessage::MISSION_ITEM_INT(item.clone());
         }
-        match self.line.ask(&question, |message| wanted(message, count))? {
+        match self.line.ask(&[question], |message| wanted(message, count))? {
             Some(result) => self.kept(result),
             None => Ok(()),
         }
@@ -360,7 +389,7 @@ impl Target {
             target_component: link::CONTROLLER.1,
             ..COMMAND_LONG_DATA::DEFAULT
         });
-        let result = self.line.ask(&request, |message| match message {
+        let result = self.line.ask(&[request], |message| match message {
             MavMessage::COMMAND_ACK(ack) if ack.command == command => Some(ack.result),
             _ => None,
         })?;
@@ -375,22 +404,29 @@ impl Target {
         let (state, uav) = (measured.state.map(State::cast), measured.uav.map(Uav::cast));
         let specific_force = measured.specific_force.map(|force| force.map(|x| x as f32));
         let mut frame = link::measured_frame(&Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force });
-        // A millionth of a second finer than any control period; 0 would be no time.
-        frame.time_usec = (t_s * 1e6).round() as u64 + 1;
+        frame.time_usec = stamp(t_s);
         frame.sequence = self.sequence;
         let is_logged = ((t_s * self.rate_hz).round() as u64).is_multiple_of(self.log_every);
-        frame.telemetry = u8::from(measured.state.is_some() && is_logged && self.line.options().telemetry);
+        frame.telemetry = u8::from(is_logged && self.line.options().telemetry);
         frame.reference_phase = ((self.reference_rate * t_s) % std::f64::consts::TAU) as f32;
-        match std::mem::replace(&mut self.begin, Begin::Begun) {
+        match self.begin {
             Begin::Begun => {}
             Begin::Standing => frame.action = LoadAction::LOAD_ACTION_STAND,
             Begin::On(zeta) => {
                 frame.action = LoadAction::LOAD_ACTION_START;
                 frame.zeta = zeta.map(|z| z as f32);
                 self.zeta = frame.zeta.map(f64::from);
+                self.begin = Begin::Begun;
             }
         }
         frame
+    }
+
+    /// What is said in this period: by the instruments, and `frame`, which ends it.
+    fn words(&mut self, frame: LOAD_STATE_DATA) -> Vec<MavMessage> {
+        let mut words = std::mem::take(&mut self.said);
+        words.push(MavMessage::LOAD_STATE(frame));
+        words
     }
 
     fn lockstep(&mut self, measured: &Measured<'_, f64>, t_s: f64) -> Result<Decision, HilError> {
@@ -399,7 +435,8 @@ impl Target {
         let is_asked = frame.telemetry != 0;
         let telemetry = std::cell::Cell::new(None);
         let begun = Instant::now();
-        let command = self.line.ask(&MavMessage::LOAD_STATE(frame), |message| match message {
+        let words = self.words(frame);
+        let command = self.line.ask(&words, |message| match message {
             MavMessage::LOAD_TELEMETRY(data) if data.sequence == sequence => {
                 telemetry.set(Some(data.clone()));
                 None
@@ -409,7 +446,9 @@ impl Target {
         })?;
         self.line.statistics.latencies_s.push(begun.elapsed().as_secs_f64());
         let telemetry = telemetry.take();
-        self.line.statistics.telemetry_lost += u64::from(is_asked && telemetry.is_none());
+        // Of a period without a state there is none.
+        let has_state = !command.faults.intersects(LoadFault::LOAD_FAULT_NO_STATE | LoadFault::LOAD_FAULT_BAD_STATE);
+        self.line.statistics.telemetry_lost += u64::from(is_asked && has_state && telemetry.is_none());
         self.decide(&command, telemetry.as_ref())
     }
 
@@ -423,7 +462,7 @@ impl Target {
             self.line.statistics.behind_s = self.line.statistics.behind_s.max(behind_s);
         }
         let sequence = frame.sequence;
-        let question = MavMessage::LOAD_STATE(frame);
+        let question = self.words(frame);
         // The first command is waited for; then what has come by the end of the period is what
         // there is.
         let (mut fresh, mut telemetry) = (None, None);
@@ -477,7 +516,8 @@ impl Target {
             Some(self.lockstep(measured, t_s)?)
         } else {
             let frame = self.frame(measured, t_s);
-            self.line.transmit(&MavMessage::LOAD_STATE(frame))?;
+            let words = self.words(frame);
+            self.line.transmit(&words)?;
             None
         };
         let mut fresh = None;
@@ -530,6 +570,9 @@ impl Target {
             }
             self.line.statistics.cycles.push(command.cycles);
             return Ok(Decision::off());
+        }
+        if self.begin == Begin::Standing && command.mode != LoadMode::LOAD_MODE_OFF {
+            self.begin = Begin::Begun;
         }
         if command.faults.contains(LoadFault::LOAD_FAULT_SEQUENCE)
             || command.faults.contains(LoadFault::LOAD_FAULT_NOT_ARMED)
@@ -597,10 +640,21 @@ impl Answers for Target {
         self.line.station.is_some()
     }
 
+    fn finds_its_state(&self) -> bool {
+        self.instruments.is_some()
+    }
+
     fn step(&mut self, read: &Reading, request: Request, t_s: f64) -> Option<&Decision> {
-        let Reading { comes, state, sees_load, uav, specific_force } = read;
+        let Reading { comes, state, sees_load, uav, specific_force, aboard } = read;
         let all = Measured { state: sees_load.then_some(state), uav: uav.as_ref(), specific_force: *specific_force };
-        let measured = if *comes { all } else { None.into() };
+        let measured = match (&mut self.instruments, aboard) {
+            (Some(instruments), Some(aboard)) => {
+                self.said = instruments.say(aboard, t_s, stamp(t_s));
+                None.into()
+            }
+            _ if *comes => all,
+            _ => None.into(),
+        };
         match self.fly(&measured, request, t_s) {
             Ok(decision) => Some(self.decision.insert(decision)),
             Err(error) => {
@@ -609,6 +663,12 @@ impl Answers for Target {
             }
         }
     }
+}
+
+/// A time on the link, µs: a millionth of a second is finer than any control period; 0 would be no
+/// time.
+fn stamp(t_s: f64) -> u64 {
+    (t_s * 1e6).round() as u64 + 1
 }
 
 /// What the target says that it is doing.

@@ -84,6 +84,7 @@ impl Controller {
             sees_load: true,
             uav: Some(Uav { position, velocity, attitude, body_rate }),
             specific_force: seen.specific_force.map(Vector3::from),
+            aboard: None,
         };
         let (request, factor) = self.requests.at(self.step);
         if let Some(applied) = self.taken_over_from.take() {

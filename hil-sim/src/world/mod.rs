@@ -78,7 +78,7 @@ pub use ground::Ground;
 pub use rate_loop::RateLoop;
 pub use rotors::{Layout, RotorFailure, Rotors};
 pub use sensors::instruments::{InstrumentModel, Readings};
-pub use sensors::{Channel, Reading, SensorModel, Sensors, Window};
+pub use sensors::{Aboard, Channel, Reading, SensorModel, Sensors, Window};
 pub use tethered::Tethered;
 pub use timing::Timing;
 

@@ -309,7 +309,7 @@ pub(super) fn quaternion_rate(quaternion: [f64; 4], omega: &Vector3<f64>) -> [f6
 
 /// A quaternion (scalar first, unit to within rounding) of a rotation: by the largest of its four
 /// parts, as Shepperd (1978).
-pub(super) fn quaternion(r: &Matrix3<f64>) -> [f64; 4] {
+pub fn quaternion(r: &Matrix3<f64>) -> [f64; 4] {
     // Four times the products of each part with all parts.
     let trace = r.m11 + r.m22 + r.m33;
     let rows = [

@@ -21,6 +21,7 @@ pub mod mocap;
 pub mod simple;
 
 use controller::{Matrix3, State, Uav, Vector3};
+use estimator::Motion;
 use serde::Deserialize;
 
 use super::check;
@@ -63,12 +64,23 @@ pub struct Reading {
     pub uav: Option<Uav<f64>>,
     /// Specific force of the UAV's centre of mass in body axes, m/s², where it is measured.
     pub specific_force: Option<Vector3<f64>>,
+    /// What the rest was found from, for who finds it himself; of a flight on an estimate.
+    pub aboard: Option<Aboard>,
+}
+
+/// What is aboard in place of the state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aboard {
+    /// Of the instruments in this period.
+    pub readings: instruments::Readings,
+    /// What navigation makes of them.
+    pub motion: Motion<f32>,
 }
 
 impl From<State<f64>> for Reading {
     /// The state and nothing else.
     fn from(state: State<f64>) -> Self {
-        Self { comes: true, state, sees_load: true, uav: None, specific_force: None }
+        Self { comes: true, state, sees_load: true, uav: None, specific_force: None, aboard: None }
     }
 }
 

@@ -11,6 +11,7 @@
 //! lateral = 0.05             # m/s², error of the thrust model across its axis, over 40 ms
 //! wind = 4.0                 # m/s
 //! offset = 0.02              # m/s², lateral bias of accelerometer and thrust's axis
+//! navigation = "own"         # on a target: by its own filter, or "other": by messages of another's
 //! start = { rod = 0.4, rate = 0.8 }   # standard deviations of the rod (rad) and its rate (1/s) at the start; it is told to hang
 //! ```
 
@@ -45,6 +46,19 @@ pub struct EstimatorSpec {
     pub offset: f64,
     /// The rod's deviations at the start.
     pub start: RodStart,
+    /// Whose navigation a target goes by.
+    pub navigation: NavigationSource,
+}
+
+/// Whose navigation a target of `hil-sim hil` goes by; in a flight in this program both are one.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum NavigationSource {
+    /// Its own, from IMU and receiver, begun at rest.
+    #[default]
+    Own,
+    /// That of another autopilot, whose place and attitude come as messages.
+    Other,
 }
 
 /// How sure the filter is of a rod that hangs straight down.
@@ -77,6 +91,7 @@ impl Default for EstimatorSpec {
             wind: noise.wind,
             offset: noise.offset,
             start: RodStart::default(),
+            navigation: NavigationSource::default(),
         }
     }
 }

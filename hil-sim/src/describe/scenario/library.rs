@@ -54,7 +54,7 @@ pub const ROUTES: &[(&str, &str)] = scenarios!["figure-eight", "survey-rows", "h
 /// is named.
 pub const STATION: &str = "ground-station";
 
-const OTHERS: &[(&str, &str)] = scenarios!["ground-station"];
+const OTHERS: &[(&str, &str)] = scenarios!["ground-station", "on-instruments"];
 
 /// The scenario of this name, if there is one.
 ///

@@ -48,7 +48,7 @@ mod library;
 mod requests;
 mod steady;
 
-pub use estimator::EstimatorSpec;
+pub use estimator::{EstimatorSpec, NavigationSource, RodStart};
 pub use library::{CURVES, FIGURES, ROUTES, STATION, builtin, builtin_names};
 pub use requests::{Asked, Requests};
 

@@ -163,6 +163,7 @@ impl<'a> Pass<'a> {
                 body_rate,
             }),
             specific_force: uav.and(*specific_force),
+            aboard: None,
         };
         self.pilot.actuation().set(logged);
         let decision = *self.pilot.step(&reading, request, t_s)?;

@@ -103,6 +103,8 @@ const PER_CEP: f64 = 0.8493;
 const DOWN: f64 = 1.6;
 /// A float solution's errors against a fixed one's.
 const FLOAT: f64 = 30.0;
+/// Only carrier phases are better than this, m.
+const PHASES_M: f64 = 0.05;
 
 impl Gnss {
     /// A part at 10 Hz, 100 ms late.
@@ -153,6 +155,17 @@ impl Gnss {
     }
 }
 
+/// What a fix is solved from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Solution {
+    /// Code alone.
+    Plain,
+    /// Carrier phases with ambiguities as real numbers.
+    Float,
+    /// Carrier phases with their whole numbers of waves.
+    Fixed,
+}
+
 /// A fix that comes now.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixReading {
@@ -166,6 +179,8 @@ pub struct FixReading {
     pub velocity_accuracy: [f64; 2],
     /// Its age as told, s.
     pub age: f64,
+    /// What it was solved from.
+    pub solution: Solution,
 }
 
 /// A receiver at work.
@@ -200,7 +215,9 @@ impl GnssModel {
             let kept = libm::exp(-1.0 / (gnss.rate_hz * gnss.slow_time_s));
             let fresh = (1.0 - kept * kept).sqrt();
             self.slow = self.slow * kept + scaled(&self.stream.normals(), gnss.slow) * fresh;
-            let factor = if gnss.float.is_some_and(|window| window.contains(t_s)) { FLOAT } else { 1.0 };
+            let is_float = gnss.float.is_some_and(|window| window.contains(t_s));
+            let factor = if is_float { FLOAT } else { 1.0 };
+            let accuracy = [0, 1].map(|i| gnss.position_noise[i].hypot(gnss.slow[i]));
             let lever = Vector3::from(gnss.lever);
             let white = scaled(&self.stream.normals(), gnss.position_noise);
             let reading = FixReading {
@@ -208,9 +225,14 @@ impl GnssModel {
                 velocity: velocity
                     + state.attitude * state.body_rate.cross(&lever)
                     + scaled(&self.stream.normals(), gnss.velocity_noise),
-                position_accuracy: [0, 1].map(|i| factor * gnss.position_noise[i].hypot(gnss.slow[i])),
+                position_accuracy: accuracy.map(|accuracy| factor * accuracy),
                 velocity_accuracy: gnss.velocity_noise,
                 age: gnss.delay_s,
+                solution: match accuracy[0] < PHASES_M {
+                    false => Solution::Plain,
+                    true if is_float => Solution::Float,
+                    true => Solution::Fixed,
+                },
             };
             if !gnss.drop_out.is_some_and(|window| window.contains(t_s)) {
                 self.line.push_back((t_s + gnss.delay_s + gnss.untold_delay_s, reading));
