@@ -46,6 +46,8 @@ fn set(station: &mut Station, message: &MavMessage) -> (Option<f32>, Vec<String>
 fn what_is_for_others_changes_nothing_and_is_not_answered() {
     for (system, component) in [(42, 0), (42, 1), (1, 154), (0, 154)] {
         let mut station = Station::new(driven(1.0));
+        // What it says unasked, it says before.
+        station.messages();
         let before = station.autopilot.settings().clone();
         let others = [
             arming(system, component),

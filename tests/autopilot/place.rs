@@ -60,7 +60,8 @@ fn a_station_is_told_where_the_vehicle_is_ten_times_a_second() {
         ..State::at_rest(Vector3::new(100.0, -50.0, -10.0))
     };
     let mut station = Station::new(Autopilot::new(Boot::default()));
-    assert!(station.messages().is_empty(), "there is nothing to be told");
+    let told = station.messages();
+    assert!(matches!(&told[..], [MavMessage::GPS_RAW_INT(_)]), "there is nothing else to be told: {told:?}");
     assert!(health(&station.autopilot).is_empty());
     station.autopilot.receive(&frame_of(&state, 1));
     station.autopilot.tick();
@@ -68,7 +69,12 @@ fn a_station_is_told_where_the_vehicle_is_ten_times_a_second() {
     // Without a home, that is all.
     station.time_ns = 1_000_000_000;
     let told = station.messages();
-    let [MavMessage::ATTITUDE(euler), MavMessage::LOCAL_POSITION_NED(local), MavMessage::VFR_HUD(_)] = &told[..]
+    let [
+        MavMessage::ATTITUDE(euler),
+        MavMessage::LOCAL_POSITION_NED(local),
+        MavMessage::VFR_HUD(_),
+        MavMessage::GPS_RAW_INT(_),
+    ] = &told[..]
     else {
         panic!("{told:?}")
     };
@@ -98,6 +104,68 @@ fn a_station_is_told_where_the_vehicle_is_ten_times_a_second() {
     // The frame's velocity is off by less than 7e-6.
     assert!((hud.groundspeed - 5.0).abs() < 1e-5, "{}", hud.groundspeed);
     assert_eq!((hud.alt, hud.climb, hud.throttle), (680.0, -0.5, 0));
+}
+
+/// What it tells of its receiver, half a second after the last time.
+fn receiver(station: &mut Station) -> GPS_RAW_INT_DATA {
+    station.time_ns += 499_000_000;
+    assert_eq!(station.messages(), [], "too early");
+    station.time_ns += 1_000_000;
+    match &station.messages()[..] {
+        [MavMessage::GPS_RAW_INT(fix)] => fix.clone(),
+        told => panic!("{told:?}"),
+    }
+}
+
+#[test]
+fn a_station_is_told_what_the_receiver_says_twice_a_second() {
+    let mut station = Station::new(Autopilot::new(Boot::default()));
+    station.messages();
+    let none = receiver(&mut station);
+    // No GPS connected; all that is unknown by MAVLink's word for it.
+    assert_eq!((none.fix_type, none.lat, none.lon, none.satellites_visible), (0, 0, 0, u8::MAX));
+    assert_eq!([none.eph, none.epv, none.vel, none.cog], [u16::MAX; 4]);
+    let said = GPS_INPUT_DATA {
+        time_usec: 17,
+        fix_type: 6,
+        lat: 535_270_000,
+        lon: -1_135_290_000,
+        alt: 668.5,
+        hdop: 0.7,
+        vdop: 1.2,
+        vn: 0.0,
+        ve: -2.0,
+        vd: 0.5,
+        speed_accuracy: 0.05,
+        horiz_accuracy: 0.012,
+        vert_accuracy: 0.02,
+        satellites_visible: 23,
+        ..GPS_INPUT_DATA::DEFAULT
+    };
+    station.say(&MavMessage::GPS_INPUT(said.clone()));
+    let fix = receiver(&mut station);
+    assert_eq!((fix.time_usec, fix.fix_type, fix.satellites_visible), (17, 6, 23));
+    assert_eq!((fix.lat, fix.lon, fix.alt), (535_270_000, -1_135_290_000, 668_500));
+    // 2 m/s to the west.
+    assert_eq!((fix.eph, fix.epv, fix.vel, fix.cog), (70, 120, 200, 27_000));
+    assert_eq!((fix.h_acc, fix.v_acc, fix.vel_acc), (12, 20, 50));
+    station.say(&MavMessage::GPS_INPUT(GPS_INPUT_DATA { ignore_flags: 2 | 4 | 8, ..said }));
+    let fix = receiver(&mut station);
+    assert_eq!([fix.eph, fix.epv, fix.vel, fix.cog], [u16::MAX; 4]);
+    // A receiver of its own message, and one that looks for satellites.
+    let raw = GPS_RAW_INT_DATA { fix_type: 1, satellites_visible: 3, ..GPS_RAW_INT_DATA::DEFAULT };
+    station.say(&MavMessage::GPS_RAW_INT(raw.clone()));
+    assert_eq!(receiver(&mut station), raw);
+    // What a router brings back of its own is no receiver's.
+    let own = MavMessage::GPS_RAW_INT(GPS_RAW_INT_DATA { fix_type: 3, ..raw.clone() });
+    let bytes = link::Encoder::new(link::CONTROLLER).frame(&own).bytes().to_vec();
+    station.hear(&bytes);
+    assert_eq!(receiver(&mut station), raw);
+    // Silent for a second and a half: a receiver without a fix.
+    receiver(&mut station);
+    receiver(&mut station);
+    let silent = receiver(&mut station);
+    assert_eq!((silent.fix_type, silent.satellites_visible), (1, u8::MAX));
 }
 
 #[test]

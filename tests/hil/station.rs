@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use controller::Mode;
 use hil_sim::describe::mission::Home;
-use hil_sim::describe::scenario::{FIGURES, STATION};
+use hil_sim::describe::scenario::{FIGURES, STATION, Scenario};
 use hil_sim::fly::flight::{Control, End};
 use hil_sim::fly::run;
 use hil_sim::hil::{Endpoint, Options, Pace, Station, Target};
@@ -73,8 +73,8 @@ fn a_ground_station_arms_a_vehicle_that_nothing_else_commands() {
     assert!(has(&|message| matches!(message, MavMessage::COMMAND_ACK(ack) if ack.command == 400 && ack.result == 0)));
     let armed = MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED as u8;
     assert!(has(&|message| matches!(message, MavMessage::HEARTBEAT(beat) if beat.base_mode & armed != 0)));
-    // The UAV stands at home, to its navigation's noise of 2 cm and the step of 1 cm; 0.15 m is the
-    // height of its feet.
+    // The UAV stands at home, to its receiver's errors of 1 cm and 2 cm and the step of 1 cm; 0.15 m
+    // is the height of its feet.
     let place = heard.iter().find_map(|message| match message {
         MavMessage::GLOBAL_POSITION_INT(place) => Some(place),
         _ => None,
@@ -83,6 +83,38 @@ fn a_ground_station_arms_a_vehicle_that_nothing_else_commands() {
     assert!((place.lat + 339_000_000).abs() < 15 && (place.lon - 184_000_000).abs() < 15, "{place:?}");
     assert!((place.alt - 50_150).abs() < 150, "{place:?}");
     assert!(!has(&|message| matches!(message, MavMessage::LOAD_COMMAND(_))), "what rotors alone need");
+    // Its receiver's fix, twice a second, from when there is one.
+    let fixes: Vec<_> = fixes(&heard).collect();
+    assert!(fixes.len() >= FLOWN_S as usize, "{} fixes", fixes.len());
+    let last = fixes.last().unwrap();
+    assert_eq!((last.fix_type, last.satellites_visible), (6, u8::MAX), "{last:?}");
+    assert!((last.lat + 339_000_000).abs() < 15 && (last.lon - 184_000_000).abs() < 15, "{last:?}");
+    assert!((last.alt - 50_150).abs() < 150 && last.h_acc == 10, "{last:?}");
+}
+
+/// What is told of the receiver.
+fn fixes(heard: &[MavMessage]) -> impl Iterator<Item = &GPS_RAW_INT_DATA> {
+    heard.iter().filter_map(|message| match message {
+        MavMessage::GPS_RAW_INT(fix) => Some(fix),
+        _ => None,
+    })
+}
+
+#[test]
+fn without_a_receiver_a_station_is_told_that_there_is_none() {
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let station = Station::open(&socket.local_addr().unwrap().to_string()).unwrap();
+    let attended = std::thread::spawn(move || attend(&socket));
+    let scenario = Scenario { estimator: None, ..scenario(STATION, 2.0) };
+    let options = Options { pace: Pace::RealTime, ..OPTIONS };
+    let mut target = Target::connect(Endpoint::Here, None, options).unwrap();
+    target.leave_to(station, &scenario).unwrap();
+    run::fly_watched(&scenario, &mut target, false, Control::alone(), &mut |_| {}).unwrap();
+    let heard = attended.join().unwrap();
+    assert!(fixes(&heard).count() >= 2);
+    assert!(fixes(&heard).all(|fix| (fix.fix_type, fix.lat, fix.lon) == (0, 0, 0)));
+    // Where it is it knows all the same.
+    assert!(heard.iter().any(|message| matches!(message, MavMessage::GLOBAL_POSITION_INT(_))));
 }
 
 #[test]

@@ -68,13 +68,18 @@ class Station:
         assert result == self.ml.MAV_RESULT_ACCEPTED, (command, params, result, self.texts[-3:])
 
     def parameters(self):
+        """All of them; those that got lost are asked for again by their index, as every station does."""
         self.link.param_fetch_all()
-        values = {}
-        while True:
-            message = self.receive(["PARAM_VALUE"], 10.0)
-            values[message.param_id] = message.param_value
-            if len(values) == message.param_count:
-                return values
+        values, count = {}, 1
+        while len(values) < count:
+            try:
+                message = self.receive(["PARAM_VALUE"], 1.0)
+            except TimeoutError:
+                missing = next(index for index in range(count) if index not in values)
+                self.link.mav.param_request_read_send(1, 1, b"", missing)
+                continue
+            values[message.param_index], count = (message.param_id, message.param_value), message.param_count
+        return dict(values.values())
 
     def modes(self):
         """Every mode's number by its name, as AVAILABLE_MODES announces them."""
@@ -137,6 +142,14 @@ def fly(station):
     euler = station.receive(["ATTITUDE"], 5.0)
     assert abs(euler.roll) < 0.1 and abs(euler.pitch) < 0.1, euler
     assert station.receive(["VFR_HUD"], 5.0).groundspeed < 1.0
+    # The receiver's own word, RTK fixed, beside where the vehicle takes itself to be.
+    begun = time.monotonic()
+    for _ in range(5):
+        fix = station.receive(["GPS_RAW_INT"], 5.0)
+    assert time.monotonic() - begun < 5.0, "fixes come less than once a second"
+    assert fix.fix_type == ml.GPS_FIX_TYPE_RTK_FIXED and fix.satellites_visible == 255, fix
+    off = math.dist(((fix.lat * 1e-7 - HOME[0]) * METRES_PER_DEGREE, fix.alt * 1e-3 - HOME[2]), (at[0], at[2]))
+    assert off < 0.2 and fix.h_acc < 50, (off, fix)
     health = station.receive(["SYS_STATUS"], 5.0).onboard_control_sensors_health
     assert health & ml.MAV_SYS_STATUS_PREARM_CHECK and health & ml.MAV_SYS_STATUS_SENSOR_GPS, health
     # A mission is there, to be drawn.

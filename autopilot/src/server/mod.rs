@@ -6,6 +6,7 @@ mod mission;
 mod modes;
 mod parameters;
 mod place;
+mod receiver;
 mod stick;
 
 use controller::{Fault, Margin, Mode};
@@ -20,6 +21,7 @@ use commands::command_int;
 use files::Files;
 use mission::Transfer;
 use place::Place;
+use receiver::Receiver;
 use stick::Switches;
 
 /// What a ground station says that it is.
@@ -56,6 +58,7 @@ pub struct Server {
     files: Files,
     transfer: Transfer,
     place: Place,
+    receiver: Receiver,
 }
 
 impl Default for Server {
@@ -79,6 +82,7 @@ impl Server {
             files: Files::new(),
             transfer: Transfer::new(),
             place: Place::new(),
+            receiver: Receiver::new(),
         }
     }
 
@@ -161,8 +165,8 @@ impl Server {
         ]
     }
 
-    /// A message that nobody asked for: a new mode or fault, where the vehicle is, or the next
-    /// parameter of a list. One
+    /// A message that nobody asked for: a new mode or fault, where the vehicle is, its
+    /// receiver's fix, or the next parameter of a list. One
     /// message a call, since a whole list would keep the control step waiting. `time_ns` is that of
     /// [`handle`](Self::handle).
     pub fn news(&mut self, time_ns: u64, autopilot: &Autopilot) -> Option<MavMessage> {
@@ -174,6 +178,9 @@ impl Server {
         }
         if let Some(place) = self.place_news(time_ns, autopilot) {
             return Some(place);
+        }
+        if let Some(fix) = self.receiver.news(time_ns) {
+            return Some(fix);
         }
         if let Some(index) = self.modes {
             let mode = modes::available(index);
@@ -277,8 +284,15 @@ impl Server {
             MavMessage::ATTITUDE_QUATERNION(attitude) => autopilot.navigation_mut().hear_attitude(&attitude),
             MavMessage::ODOMETRY(odometry) => autopilot.navigation_mut().hear_odometry(&odometry),
             MavMessage::HIGHRES_IMU(imu) => autopilot.navigation_mut().hear_imu(&imu),
-            MavMessage::GPS_INPUT(fix) => autopilot.navigation_mut().instruments_mut().hear_gps_input(&fix),
-            MavMessage::GPS_RAW_INT(fix) => autopilot.navigation_mut().instruments_mut().hear_gps_raw(&fix),
+            MavMessage::GPS_INPUT(fix) => {
+                self.receiver.hear_input(&fix, time_ns);
+                autopilot.navigation_mut().instruments_mut().hear_gps_input(&fix);
+            }
+            // Its own word, which a router may bring back, is no receiver's.
+            MavMessage::GPS_RAW_INT(fix) if sender != link::CONTROLLER => {
+                self.receiver.hear_raw(&fix, time_ns);
+                autopilot.navigation_mut().instruments_mut().hear_gps_raw(&fix);
+            }
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
             MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
                 autopilot.hear_battery(battery.battery_remaining);

@@ -35,6 +35,9 @@ mod app {
     /// Bytes that wait to be sent: a parameter list comes one by one, so this is some ten frames.
     const OUTBOX: usize = 2048;
 
+    /// The longest frame.
+    const FRAME: usize = 280;
+
     /// The timer's period in lockstep, s: half of the watchdog's.
     const LOCKSTEP_PERIOD_S: f32 = 0.25;
 
@@ -72,6 +75,12 @@ mod app {
     }
 
     impl Outbox {
+        /// Whether half of it stays free with one more frame: news waits for that, of which a list
+        /// has more than fits, and answers find room beside it.
+        fn has_room(&self) -> bool {
+            self.bytes.len() < OUTBOX / 2 - FRAME
+        }
+
         /// The whole frame or nothing of it.
         fn send(&mut self, message: &MavMessage) {
             let frame = self.encoder.frame(message);
@@ -221,7 +230,9 @@ mod app {
                 outbox.send(&MavMessage::LOAD_COMMAND(answer.command));
             });
         }
-        let news = (&mut autopilot, &mut server).lock(|autopilot, server| server.news(clock::now_ns(), autopilot));
+        let has_room = outbox.lock(|outbox| outbox.has_room());
+        let news = (&mut autopilot, &mut server)
+            .lock(|autopilot, server| has_room.then(|| server.news(clock::now_ns(), autopilot)).flatten());
         if let Some(news) = &news {
             outbox.lock(|outbox| outbox.send(news));
         }

@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use super::Wire;
 
 /// The system keeps some hundred bytes beside each datagram, and an emulator makes a datagram of
-/// each byte: so this is room for a few hundred of them, some answers with telemetry.
-const ROOM: usize = 1 << 20;
+/// each byte: so this is room for ten thousand of them, a list of all parameters.
+const ROOM: usize = 1 << 22;
 
 /// The longest datagram that is read whole: any frame is shorter.
 const LONGEST: usize = 512;
