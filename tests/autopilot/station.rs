@@ -154,7 +154,7 @@ impl Station {
     pub fn messages(&mut self) -> Vec<MavMessage> {
         let Self { autopilot, server, time_ns, .. } = self;
         let time_ns = *time_ns;
-        std::iter::from_fn(|| server.news(time_ns, autopilot)).collect()
+        std::iter::from_fn(|| server.news(time_ns, autopilot).or_else(|| server.listed(autopilot))).collect()
     }
 }
 

@@ -100,7 +100,7 @@ impl Station {
 
     /// What `is_it` makes of the first message that it knows, from those not asked for yet on.
     fn until<R>(&mut self, what: &str, is_it: impl Fn(&MavMessage) -> Option<R>) -> R {
-        let (begun, mut passed) = (Instant::now(), Vec::new());
+        let (begun, mut passed, mut others, first) = (Instant::now(), Vec::new(), 0, self.sequence);
         while begun.elapsed() < PATIENCE {
             while !self.heard.is_empty() {
                 let message = self.heard.remove(0);
@@ -109,6 +109,8 @@ impl Station {
                 }
                 if let MavMessage::STATUSTEXT(said) = &message {
                     passed.push(said.text.to_str().unwrap_or_default().to_owned());
+                } else {
+                    others += 1;
                 }
             }
             self.see();
@@ -123,7 +125,8 @@ impl Station {
                 Err(error) => assert!(matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut), "{error}"),
             }
         }
-        panic!("{what} never came, but {passed:?}");
+        let states = self.sequence - first;
+        panic!("{what} never came, but {passed:?} and {others} other messages, in {states} states");
     }
 
     /// Follows, with station and stick alive as they are in `alive`, which fall silent when it has
@@ -133,7 +136,8 @@ impl Station {
         self.alive.clone().iter().for_each(|message| self.say(message));
         self.ask(LoadMode::LOAD_MODE_FOLLOW);
         self.hears("joining the path");
-        self.alive.clear();
+        // Once more: what a busy host was late with may have been lost before.
+        std::mem::take(&mut self.alive).iter().for_each(|message| self.say(message));
     }
 
     /// Waits for a status text that begins so.

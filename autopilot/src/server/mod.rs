@@ -165,10 +165,8 @@ impl Server {
         ]
     }
 
-    /// A message that nobody asked for: a new mode or fault, where the vehicle is, its
-    /// receiver's fix, or the next parameter of a list. One
-    /// message a call, since a whole list would keep the control step waiting. `time_ns` is that of
-    /// [`handle`](Self::handle).
+    /// A message that nobody asked for: a new mode or fault, where the vehicle is, its receiver's
+    /// fix. `time_ns` is that of [`handle`](Self::handle).
     pub fn news(&mut self, time_ns: u64, autopilot: &Autopilot) -> Option<MavMessage> {
         if let Some(change) = self.change(autopilot) {
             return Some(change);
@@ -179,9 +177,12 @@ impl Server {
         if let Some(place) = self.place_news(time_ns, autopilot) {
             return Some(place);
         }
-        if let Some(fix) = self.receiver.news(time_ns) {
-            return Some(fix);
-        }
+        self.receiver.news(time_ns)
+    }
+
+    /// The next parameter or mode of a list that was asked for: to be called when there is room for
+    /// it on the line. One message a call, since a whole list would keep the control step waiting.
+    pub fn listed(&mut self, autopilot: &Autopilot) -> Option<MavMessage> {
         if let Some(index) = self.modes {
             let mode = modes::available(index);
             self.modes = mode.is_some().then_some(index + 1);

@@ -75,16 +75,25 @@ mod app {
     }
 
     impl Outbox {
-        /// Whether half of it stays free with one more frame: news waits for that, of which a list
-        /// has more than fits, and answers find room beside it.
+        /// Whether half of it stays free with one more frame: a list, of which there is more than
+        /// fits, waits for that.
         fn has_room(&self) -> bool {
             self.bytes.len() < OUTBOX / 2 - FRAME
         }
 
         /// The whole frame or nothing of it.
         fn send(&mut self, message: &MavMessage) {
+            self.send_leaving(message, 0);
+        }
+
+        /// An answer, which leaves room for news: it is followed by the next, and those are not.
+        fn answer(&mut self, message: &MavMessage) {
+            self.send_leaving(message, 2 * FRAME);
+        }
+
+        fn send_leaving(&mut self, message: &MavMessage, room: usize) {
             let frame = self.encoder.frame(message);
-            if self.bytes.capacity() - self.bytes.len() < frame.bytes().len() {
+            if self.bytes.capacity() - self.bytes.len() < frame.bytes().len() + room {
                 self.lost = self.lost.wrapping_add(frame.bytes().len() as u32);
                 return;
             }
@@ -225,14 +234,16 @@ mod app {
         if let Some(answer) = answer.lock(Option::take) {
             outbox.lock(|outbox| {
                 if let Some(telemetry) = answer.telemetry {
-                    outbox.send(&MavMessage::LOAD_TELEMETRY(telemetry));
+                    outbox.answer(&MavMessage::LOAD_TELEMETRY(telemetry));
                 }
-                outbox.send(&MavMessage::LOAD_COMMAND(answer.command));
+                outbox.answer(&MavMessage::LOAD_COMMAND(answer.command));
             });
         }
         let has_room = outbox.lock(|outbox| outbox.has_room());
-        let news = (&mut autopilot, &mut server)
-            .lock(|autopilot, server| has_room.then(|| server.news(clock::now_ns(), autopilot)).flatten());
+        let news = (&mut autopilot, &mut server).lock(|autopilot, server| {
+            let news = server.news(clock::now_ns(), autopilot);
+            if news.is_none() && has_room { server.listed(autopilot) } else { news }
+        });
         if let Some(news) = &news {
             outbox.lock(|outbox| outbox.send(news));
         }

@@ -92,8 +92,9 @@ impl Program {
             }
         }
         let time_ns = self.start.elapsed().as_nanos() as u64;
-        while let Some(news) = self.server.news(time_ns, &self.autopilot) {
-            self.send(&news);
+        let Self { server, autopilot, encoder, outbox, .. } = self;
+        while let Some(news) = server.news(time_ns, autopilot).or_else(|| server.listed(autopilot)) {
+            outbox.extend_from_slice(encoder.frame(&news).bytes());
         }
     }
 
