@@ -152,16 +152,16 @@ pub fn turn<T: Real>(
     (turned, body_rate)
 }
 
-/// What a state and a disturbance that grows become in `dt` under a held `command`, to second
-/// order: the accelerations are those halfway, where the rates bring rod and attitude.
+/// Moves a state and a disturbance that grows on by `dt` under a held `command`, to second order:
+/// the accelerations are those halfway, where the rates bring rod and attitude.
 #[inline(never)]
 pub fn pass<T: Real>(
     vehicle: &Vehicle<T>,
-    state: &State<T>,
-    disturbance: &Disturbance<T>,
+    state: &mut State<T>,
+    disturbance: &mut Disturbance<T>,
     command: &Command<T>,
     dt: T,
-) -> (State<T>, Disturbance<T>) {
+) {
     let half = dt * T::lit(0.5);
     let known = Disturbance {
         payload: disturbance.payload + disturbance.payload_rate * half,
@@ -179,15 +179,13 @@ pub fn pass<T: Real>(
     let (q, w) = across((unit(&q), w));
     halfway.rod_rate = (state.rod_rate + w) * T::lit(0.5);
     let (payload, _) = Model::at(vehicle, &halfway).payload(command.thrust, &known.payload);
-    let (position, velocity) = advance(&state.position, &state.velocity, &payload, dt);
+    (state.position, state.velocity) = advance(&state.position, &state.velocity, &payload, dt);
+    (state.rod, state.rod_rate) = (q, w);
     let (angle, body_rate) = advance(&Vector3::zeros(), &state.body_rate, &body, dt);
-    let state =
-        State { position, velocity, rod: q, rod_rate: w, attitude: turned(&state.attitude, &angle), body_rate };
-    let mut disturbance = *disturbance;
+    (state.attitude, state.body_rate) = (turned(&state.attitude, &angle), body_rate);
     disturbance.payload += disturbance.payload_rate * dt;
     disturbance.rod += disturbance.rod_rate * dt;
     disturbance.rod -= q * q.dot(&disturbance.rod);
-    (state, disturbance)
 }
 
 fn unit<T: Real>(v: &Vector3<T>) -> Vector3<T> {
@@ -235,7 +233,7 @@ mod tests {
         };
         let command = Command { thrust: 1.2 * vehicle.hover_thrust(), torque: Vector3::new(0.3, 0.2, -0.1) };
         for _ in 0..steps {
-            (state, disturbance) = pass(&vehicle, &state, &disturbance, &command, 0.06 / f64::from(steps));
+            pass(&vehicle, &mut state, &mut disturbance, &command, 0.06 / f64::from(steps));
         }
         state
     }

@@ -266,8 +266,8 @@ impl<T: Real> Actuators<T> {
 
     /// The mean over the period of the command sent `before` the last one; `acting` at its
     /// beginning, and then at its end.
-    // Apart: in its loop it would stand several times.
-    #[inline(never)]
+    // Apart where code is scarce: in its loop it would stand several times.
+    #[cfg_attr(target_arch = "arm", inline(never))]
     fn pass(&self, acting: &mut Command<T>, before: usize) -> Command<T> {
         let command = self.sent(before);
         let Some(lag) = &self.lag else { return command };

@@ -358,7 +358,9 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     #[cold]
     pub(crate) fn carry(&self) -> State<T> {
         let Memory { weighed, period, last, actuators, observer, .. } = &self.memory;
-        pass(weighed, last, observer.estimate(), &actuators.mean(), *period).0
+        let (mut state, mut known) = (*last, *observer.estimate());
+        pass(weighed, &mut state, &mut known, &actuators.mean(), *period);
+        state
     }
 
     fn reset(&mut self, state: &State<T>, applied: Command<T>) {
@@ -469,14 +471,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// rates, in a fixed number of steps (11.10).
     #[cold]
     fn fly_through(&mut self, sampled: &State<T>) {
-        let Memory { weighed, actuators, observer, .. } = &self.memory;
-        let (mut state, mut known, mut acting) = (*sampled, *observer.estimate(), *actuators.applied());
-        for index in 0..actuators.legs() {
+        let (mut known, mut acting) = (*self.memory.observer.estimate(), *self.memory.actuators.applied());
+        self.memory.ahead.state = *sampled;
+        for index in 0..self.memory.actuators.legs() {
             let (time, mean) = self.leg(index, &mut acting);
-            (state, known) = pass(weighed, &state, &known, &mean, time);
+            let Memory { weighed, ahead, .. } = &mut self.memory;
+            pass(weighed, &mut ahead.state, &mut known, &mean, time);
         }
         self.memory.expected = Some(known);
-        self.memory.ahead.state = state;
     }
 
     /// Begins a period: limits `command`, sends it, and moves ζ over the coming hold by `u_zeta`.
