@@ -245,10 +245,7 @@ pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch:
         applied = decision.command;
         world.obey(decision.order());
         step += 1;
-        // Nothing but an infinity and a NaN makes something of zero.
-        let Command { thrust, torque } = &decision.command;
-        let finite = (torque * 0.0).sum() + thrust * 0.0 == 0.0;
-        if !(finite && world.body().is_finite()) {
+        if !(applied.is_finite() && world.body().is_finite()) {
             end = End::NotFinite(t_s);
             break;
         }

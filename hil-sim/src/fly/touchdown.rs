@@ -57,8 +57,13 @@ impl Watch {
 
     /// Looks at `body`; `true` if it has crashed: come to the ground faster than it stands, or
     /// tipped over on it.
+    #[inline]
     pub(super) fn has_crashed(&mut self, body: &Body) -> bool {
-        let Some(ground) = self.ground else { return false };
+        self.ground.is_some_and(|ground| self.crashes(&ground, body))
+    }
+
+    /// The same over this `ground`.
+    fn crashes(&mut self, ground: &Ground, body: &Body) -> bool {
         let (touching, bodies) = (body.touching(), body.bodies());
         let sinking = [bodies.velocity.z, bodies.uav_velocity.z];
         let mut is_hard = false;
@@ -77,8 +82,14 @@ impl Watch {
     }
 
     /// Notes what is asked for and what the vehicle does; `true` once it has flown, its rotors are
-    /// off, and both bodies stand.
+    /// off, and both bodies stand. Where there is no ground there is no landing.
+    #[inline]
     pub(super) fn has_landed(&mut self, body: &Body, request: Request, mode: Mode) -> bool {
+        self.ground.is_some() && self.stands(body, request, mode)
+    }
+
+    /// The same over ground.
+    fn stands(&mut self, body: &Body, request: Request, mode: Mode) -> bool {
         let position = body.position();
         let mean = self.mean.get_or_insert(position);
         *mean += (position - *mean) * (self.period / AVERAGED_S);

@@ -142,6 +142,7 @@ pub struct ActuatorModel {
     /// What the rotors are told now, and what they give.
     target: Command<f64>,
     given: Command<f64>,
+    decay: Decay,
 }
 
 /// Times closer than this are the same, s: far below any period, far above the rounding of a day's
@@ -157,10 +158,12 @@ impl ActuatorModel {
             Some(_) => Order::Rates { thrust: command.thrust, body_rate: Vector3::zeros() },
             None => Order::Wrench(command),
         };
-        Self { actuators, line: VecDeque::new(), order, loop_at_s: 0.0, target, given: target }
+        let decay = Decay { lag_s: actuators.lag_s, step_s: 0.0, over_half: 1.0, over_step: 1.0 };
+        Self { actuators, line: VecDeque::new(), order, loop_at_s: 0.0, target, given: target, decay }
     }
 
     /// Takes an order at `t_s`.
+    #[inline]
     pub fn push(&mut self, t_s: f64, order: Order) {
         self.line.push_back((t_s + self.actuators.latency_s, order));
     }
@@ -169,14 +172,14 @@ impl ActuatorModel {
     /// to `end_s`: the length of that piece.
     pub fn piece(&mut self, t_s: f64, end_s: f64, body: &Body) -> f64 {
         let mut next_s = end_s;
-        while let Some(&(at_s, order)) = self.line.front() {
-            if at_s > t_s + INSTANT {
-                next_s = at_s;
+        while let Some((at_s, order)) = self.line.front() {
+            if *at_s > t_s + INSTANT {
+                next_s = *at_s;
                 break;
             }
-            self.order = order;
+            self.order = *order;
             if let Order::Wrench(command) = order {
-                self.target = self.actuators.saturate(at_s, &command);
+                self.target = self.actuators.saturate(*at_s, command);
             }
             self.line.pop_front();
         }
@@ -191,7 +194,14 @@ impl ActuatorModel {
         if next_s < end_s - INSTANT { next_s - t_s } else { end_s - t_s }
     }
 
+    /// Before steps of this length, s, at whose ends and middles [`at`](Self::at) is mostly asked.
+    #[inline]
+    pub fn prepare(&mut self, step_s: f64) {
+        self.decay.prepare(step_s);
+    }
+
     /// What acts on the vehicle `dt` s after the piece's start at `t_s`.
+    #[inline]
     #[must_use]
     pub fn at(&self, t_s: f64, dt: f64) -> Command<f64> {
         let mut command = self.lagging(dt);
@@ -209,10 +219,12 @@ impl ActuatorModel {
     }
 
     /// Ends a piece of `dt` s.
+    #[inline]
     pub fn pass(&mut self, dt: f64) {
         self.given = self.lagging(dt);
     }
 
+    #[inline]
     fn lagging(&self, dt: f64) -> Command<f64> {
         if self.actuators.lag_s == 0.0 {
             return self.target;
@@ -220,10 +232,41 @@ impl ActuatorModel {
         if dt == 0.0 {
             return self.given;
         }
-        let kept = decay(dt / self.actuators.lag_s);
+        let kept = self.decay.over(dt);
         Command {
             thrust: self.target.thrust + (self.given.thrust - self.target.thrust) * kept,
             torque: self.target.torque + (self.given.torque - self.target.torque) * kept,
+        }
+    }
+}
+
+/// What a lag leaves of a distance after a time, at hand for a step and for half of one: most steps
+/// of a flight are alike.
+#[derive(Clone, Debug)]
+struct Decay {
+    lag_s: f64,
+    step_s: f64,
+    over_half: f64,
+    over_step: f64,
+}
+
+impl Decay {
+    #[inline]
+    fn prepare(&mut self, step_s: f64) {
+        if step_s != self.step_s && self.lag_s > 0.0 {
+            let [over_half, over_step] = [0.5 * step_s, step_s].map(|dt| decay(dt / self.lag_s));
+            *self = Self { step_s, over_half, over_step, ..*self };
+        }
+    }
+
+    #[inline]
+    fn over(&self, dt: f64) -> f64 {
+        if dt == self.step_s {
+            self.over_step
+        } else if dt == 0.5 * self.step_s {
+            self.over_half
+        } else {
+            decay(dt / self.lag_s)
         }
     }
 }

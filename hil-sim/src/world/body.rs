@@ -122,6 +122,7 @@ impl Body {
     }
 
     /// Tells the cable what time it is.
+    #[inline]
     pub(super) fn set_time(&mut self, t_s: f64) {
         if let Self::Cable(body) = self {
             body.set_time(t_s);
@@ -129,11 +130,12 @@ impl Body {
     }
 
     /// The state as the law takes it.
+    #[inline]
     #[must_use]
     pub fn state(&self) -> State<f64> {
         match self {
             Self::Rod(body) => body.state(),
-            Self::Cable(body) => body.bodies().state(),
+            Self::Cable(body) => body.state(),
         }
     }
 
@@ -226,6 +228,7 @@ impl Body {
     }
 
     /// The longest step, s, that resolves what moves.
+    #[inline]
     pub(super) fn largest_step(&self) -> f64 {
         match self {
             Self::Rod(_) => f64::INFINITY,

@@ -9,6 +9,7 @@ use serde::Deserialize;
 
 use super::check;
 use super::dryden::Gusts;
+use super::multibody::Loads;
 use crate::describe::input::{Invalid, all_within, join};
 
 /// What is around the vehicle.
@@ -91,6 +92,43 @@ impl Environment {
             check(&at, "drag_area", step.drag_area.unwrap_or_default(), 0.0, 10.0)?;
         }
         Ok(())
+    }
+}
+
+/// What acts from outside over the running period.
+#[derive(Clone, Debug)]
+pub(super) struct Outside {
+    /// Whatever the bodies do.
+    constant: Loads,
+    /// Mean velocity of the air in N, m/s.
+    pub wind: Vector3<f64>,
+    /// Its velocity now.
+    pub air: Vector3<f64>,
+    /// ½ ρ C_d A of payload and UAV, kg/m.
+    pub drag: [f64; 2],
+}
+
+impl Outside {
+    /// In calm air, or in the mean wind of `environment`.
+    pub fn new(environment: &Environment) -> Self {
+        let Environment { payload_force, uav_force, torque, air, .. } = *environment;
+        let [payload_force, uav_force, torque] = [payload_force, uav_force, torque].map(Vector3::from);
+        let wind = air.map_or(Vector3::zeros(), |air| air.wind.into());
+        let drag = air
+            .map_or([0.0; 2], |air| [air.payload_drag_area, air.uav_drag_area].map(|area| 0.5 * air.density * area));
+        Self { constant: Loads { payload_force, uav_force, torque }, wind, air: wind, drag }
+    }
+
+    /// With what the velocities of payload and UAV, m/s in N, bring with them.
+    #[inline]
+    pub fn loads(&self, payload: &Vector3<f64>, uav: &Vector3<f64>) -> Loads {
+        let mut loads = self.constant;
+        let [payload_drag, uav_drag] = self.drag;
+        if payload_drag > 0.0 || uav_drag > 0.0 {
+            loads.payload_force += drag(payload_drag, &self.air, payload);
+            loads.uav_force += drag(uav_drag, &self.air, uav);
+        }
+        loads
     }
 }
 

@@ -4,24 +4,26 @@
 /// One step of the classical Runge-Kutta method, order 4, from `x` at time `t` over `step` seconds.
 #[inline]
 pub fn rk4_step<const N: usize>(f: impl Fn(f64, &[f64; N]) -> [f64; N], t: f64, x: &[f64; N], step: f64) -> [f64; N] {
-    let rates = rk4_rates(f, t, x, step);
+    let rates = rk4_rates(|t, x| f(*t, x), &[t, t + 0.5 * step, t + step], x, step);
     rk4_end(x, &rates, step)
 }
 
-/// The rates at the four stages of such a step.
+/// The rates at the four stages of such a step, with what acts at its beginning, middle and end.
 #[inline]
-pub fn rk4_rates<const N: usize>(
-    f: impl Fn(f64, &[f64; N]) -> [f64; N],
-    t: f64,
+pub fn rk4_rates<const N: usize, A>(
+    f: impl Fn(&A, &[f64; N]) -> [f64; N],
+    [begin, middle, end]: &[A; 3],
     x: &[f64; N],
     step: f64,
 ) -> [[f64; N]; 4] {
     let half = 0.5 * step;
-    let k1 = f(t, x);
-    let k2 = f(t + half, &advance(x, &k1, half));
-    let k3 = f(t + half, &advance(x, &k2, half));
-    let k4 = f(t + step, &advance(x, &k3, step));
-    [k1, k2, k3, k4]
+    // Each is written where it stays.
+    let mut rates = [[0.0; N]; 4];
+    rates[0] = f(begin, x);
+    rates[1] = f(middle, &advance(x, &rates[0], half));
+    rates[2] = f(middle, &advance(x, &rates[1], half));
+    rates[3] = f(end, &advance(x, &rates[2], step));
+    rates
 }
 
 /// Where such a step from `x` ends.

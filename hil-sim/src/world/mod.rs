@@ -82,10 +82,10 @@ pub use sensors::{Aboard, Channel, Reading, SensorModel, Sensors, Window};
 pub use tethered::Tethered;
 pub use timing::Timing;
 
-use controller::{Command, State, Vector3};
+use controller::{Command, State};
 
 use crate::describe::input::{Invalid, within};
-use crate::world::multibody::Loads;
+use crate::world::environment::Outside;
 use crate::world::random::{Purpose, Stream};
 use witness::plant::VehicleParameters;
 
@@ -144,10 +144,7 @@ pub struct World {
     /// What they made of the body last.
     reading: Reading,
     gusts: Option<Dryden>,
-    /// Velocity of the air in N over the running period, m/s.
-    air: Vector3<f64>,
-    /// ½ ρ C_d A of payload and UAV, kg/m.
-    drag: [f64; 2],
+    outside: Outside,
     clock: Stream,
     /// Periods since the first with a state.
     since_first: u32,
@@ -168,18 +165,14 @@ impl World {
     }
 
     fn with(spec: &WorldSpec, body: Body, command: Command<f64>, seed: Seed) -> Self {
-        let air = spec.environment.air;
-        let wind = air.map_or(Vector3::zeros(), |air| Vector3::from(air.wind));
-        let gusts = air.and_then(|air| air.gusts);
+        let outside = Outside::new(&spec.environment);
+        let gusts = spec.environment.air.and_then(|air| air.gusts);
         Self {
             actuators: ActuatorModel::new(spec.actuators, command),
             sensors: SensorModel::new(spec.sensors, spec.period, &body.state(), seed.stream(Purpose::Sensor)),
             reading: body.state().into(),
-            gusts: gusts.map(|gusts| Dryden::new(&gusts, &wind, spec.period, seed.stream(Purpose::Gust))),
-            air: wind,
-            drag: air.map_or([0.0; 2], |air| {
-                [air.payload_drag_area, air.uav_drag_area].map(|area| 0.5 * air.density * area)
-            }),
+            gusts: gusts.map(|gusts| Dryden::new(&gusts, &outside.wind, spec.period, seed.stream(Purpose::Gust))),
+            outside,
             body,
             clock: seed.stream(Purpose::Timing),
             since_first: 0,
@@ -214,18 +207,19 @@ impl World {
         let Sensors { uav, accelerometer, .. } = self.spec.sensors;
         // On a rod, the state says it all.
         let apart = matches!(self.body, Body::Cable(_));
-        let uav = uav.unwrap_or(apart).then(|| {
+        // What is given once is given at every sample.
+        if uav.unwrap_or(apart) {
             let Bodies { uav_position, uav_velocity, .. } = self.body.bodies();
-            self.sensors.read_uav(self.t_s, [&uav_position, &uav_velocity], &self.reading.state)
-        });
-        let specific_force = accelerometer.unwrap_or(apart).then(|| {
+            let own = [&uav_position, &uav_velocity];
+            self.reading.uav = Some(self.sensors.read_uav(self.t_s, own, &self.reading.state));
+        }
+        if accelerometer.unwrap_or(apart) {
             let mut acceleration = self.rates().uav;
             acceleration.z -= self.body.vehicle().gravity;
-            let attitude = self.body.bodies().attitude;
-            self.sensors.read_force(self.t_s, &attitude.tr_mul(&acceleration))
-        });
+            let force = self.body.bodies().attitude.tr_mul(&acceleration);
+            self.reading.specific_force = Some(self.sensors.read_force(self.t_s, &force));
+        }
         (self.reading.comes, self.reading.sees_load) = (true, true);
-        (self.reading.uav, self.reading.specific_force) = (uav, specific_force);
         &mut self.reading
     }
 
@@ -262,8 +256,7 @@ impl World {
         self.step_payload();
         self.body.set_time(self.t_s);
         if let Some(gusts) = &mut self.gusts {
-            let mean = self.spec.environment.air.map_or([0.0; 3], |air| air.wind);
-            self.air = Vector3::from(mean) + gusts.step();
+            self.outside.air = self.outside.wind + gusts.step();
         }
         self.actuators.push(self.t_s, order);
         let end_s = self.t_s + self.spec.period * self.spec.timing.stretch(&mut self.clock);
@@ -279,49 +272,29 @@ impl World {
     /// Flies a piece of time in which the rotors are told one thing.
     #[inline]
     fn fly(&mut self, piece: f64) {
-        let loads = self.loads();
         let share = piece / self.spec.period * f64::from(self.spec.substeps);
         let resolved = piece / self.body.largest_step();
         let least = share.max(resolved) - 1e-6;
-        let whole = least as u32;
-        let steps = whole + u32::from(least > f64::from(whole) || whole == 0);
+        let steps = if least > 1.0 { libm::ceil(least) as u32 } else { 1 };
         let step = piece / f64::from(steps);
+        self.actuators.prepare(step);
+        let Self { actuators, body, outside, t_s, .. } = self;
         for index in 0..steps {
             let start = step * f64::from(index);
-            let (actuators, t_s) = (&self.actuators, self.t_s);
-            self.body.advance(step, |t| actuators.at(t_s, start + t), &loads);
+            body.advance(step, |t| actuators.at(*t_s, start + t), |payload, uav| outside.loads(payload, uav));
         }
-        self.actuators.pass(piece);
-    }
-
-    /// What the velocities of payload and UAV bring with them now.
-    #[inline]
-    fn loads(&self) -> impl Fn(&Vector3<f64>, &Vector3<f64>) -> Loads + use<> {
-        let Environment { payload_force, uav_force, torque, .. } = self.spec.environment;
-        let constant = Loads {
-            payload_force: Vector3::from(payload_force),
-            uav_force: Vector3::from(uav_force),
-            torque: Vector3::from(torque),
-        };
-        let (air, [payload_drag, uav_drag]) = (self.air, self.drag);
-        move |payload: &Vector3<f64>, uav: &Vector3<f64>| {
-            let mut loads = constant;
-            if payload_drag > 0.0 || uav_drag > 0.0 {
-                loads.payload_force += drag(payload_drag, &air, payload);
-                loads.uav_force += drag(uav_drag, &air, uav);
-            }
-            loads
-        }
+        actuators.pass(piece);
     }
 
     /// Accelerations and the cable's pull now, under what the rotors give.
     #[must_use]
     pub fn rates(&self) -> Rates {
         let bodies = self.body.bodies();
-        let loads = self.loads()(&bodies.velocity, &bodies.uav_velocity);
+        let loads = self.outside.loads(&bodies.velocity, &bodies.uav_velocity);
         self.body.rates(&self.actuators.at(self.t_s, 0.0), &loads)
     }
 
+    #[inline]
     fn step_payload(&mut self) {
         if let Some(step) = self.spec.environment.payload_step
             && self.t_s >= step.at_s - 0.5 * self.spec.period
@@ -329,7 +302,7 @@ impl World {
         {
             self.body.set_payload_mass(step.mass);
             if let (Some(area), Some(air)) = (step.drag_area, self.spec.environment.air) {
-                self.drag[0] = 0.5 * air.density * area;
+                self.outside.drag[0] = 0.5 * air.density * area;
             }
         }
     }

@@ -69,6 +69,7 @@ const ROD_RATE: usize = 13;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Multibody {
     vehicle: VehicleParameters,
+    inertias: Inertias,
     /// Of the payload in N, m.
     position: Vector3<f64>,
     x: Coordinates,
@@ -84,7 +85,7 @@ impl Multibody {
             [&state.velocity, &state.body_rate, &state.rod, &state.rod_rate],
         );
         project(&mut x);
-        Self { vehicle, position: state.position, x }
+        Self { vehicle, inertias: Inertias::of(&vehicle), position: state.position, x }
     }
 
     /// The vehicle that moves.
@@ -97,9 +98,11 @@ impl Multibody {
     /// payload's velocity.
     pub fn set_payload_mass(&mut self, mass: f64) {
         self.vehicle.payload_mass = mass;
+        self.inertias = Inertias::of(&self.vehicle);
     }
 
     /// The state as the law takes it.
+    #[inline]
     #[must_use]
     pub fn state(&self) -> State<f64> {
         let x = &self.x;
@@ -134,7 +137,7 @@ impl Multibody {
     /// Accelerations now, under `command` and `loads`.
     #[must_use]
     pub fn acceleration(&self, command: &Command<f64>, loads: &Loads) -> Acceleration {
-        Inertias::of(&self.vehicle).acceleration(&self.x, command, loads)
+        self.inertias.acceleration(&self.x, command, loads)
     }
 
     /// One Runge-Kutta step over `step` seconds, then the projection. `command` gives thrust and
@@ -147,17 +150,15 @@ impl Multibody {
         command: impl Fn(f64) -> Command<f64>,
         loads: impl Fn(&Vector3<f64>, &Vector3<f64>) -> Loads,
     ) {
-        let inertias = Inertias::of(&self.vehicle);
-        // The two stages in the middle share theirs.
-        let acting = [0.0, 0.5 * step, step].map(command);
-        let derivative = |t: f64, x: &Coordinates| {
+        let inertias = &self.inertias;
+        let derivative = |acting: &Command<f64>, x: &Coordinates| {
             let (v, w) = (vector(x, VELOCITY), vector(x, ROD_RATE));
             let loads = loads(&v, &(v - w * inertias.rod_length));
-            let stage = usize::from(t > 0.0) + usize::from(t == step);
-            let Acceleration { payload, rod, body } = inertias.acceleration(x, &acting[stage], &loads);
+            let Acceleration { payload, rod, body } = inertias.acceleration(x, acting, &loads);
             coordinates(quaternion_rate(attitude(x), &vector(x, BODY_RATE)), [&payload, &body, &w, &rod])
         };
-        let rates = rk4_rates(derivative, 0.0, &self.x, step);
+        let acting = [command(0.0), command(0.5 * step), command(step)];
+        let rates = rk4_rates(derivative, &acting, &self.x, step);
         // Its own rates are the velocities of the stages, each from the one before.
         let [a1, a2, a3] = [0, 1, 2].map(|stage| vector(&rates[stage], VELOCITY));
         self.position += (vector(&self.x, VELOCITY) + (a1 + a2 + a3) * (step / 6.0)) * step;
@@ -179,11 +180,10 @@ impl Multibody {
     /// Whether every coordinate is a finite number.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // Nothing but an infinity and a NaN makes something of zero.
-        let nothing = |values: &[f64]| values.iter().map(|value| 0.0 * value).sum::<f64>();
-        let (left, right) = self.x.split_at(self.x.len() / 2);
-        let pairs: [f64; 8] = std::array::from_fn(|i| left[i] * 0.0 + right[i] * 0.0);
-        nothing(&pairs) + nothing(self.position.as_slice()) == 0.0
+        // Neither an infinity nor a NaN has a finite sum with anything.
+        let (pairs, _) = self.x.as_chunks();
+        let [a, b] = pairs.iter().fold([0.0; 2], |[a, b], [x, y]| [a + x, b + y]);
+        (a + b + self.position.sum()).is_finite()
     }
 }
 
@@ -211,6 +211,7 @@ fn attitude(x: &Coordinates) -> [f64; 4] {
 }
 
 /// What a vehicle's numbers make of forces and torques.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Inertias {
     rod_length: f64,
     gravity: f64,
@@ -226,7 +227,6 @@ struct Inertias {
 }
 
 impl Inertias {
-    #[inline]
     fn of(vehicle: &VehicleParameters) -> Self {
         let VehicleParameters { payload_mass, uav_mass, rod_length, inertia: [j1, j2, j3], gravity } = *vehicle;
         let per_total = 1.0 / (payload_mass + uav_mass);

@@ -88,51 +88,48 @@ impl Stream {
 
     /// Standard normal.
     pub fn normal(&mut self) -> f64 {
-        loop {
-            let (layer, x, is_below) = self.layers.place(self.source.next_u64());
-            if is_below {
-                return x;
-            }
-            if let Some(x) = self.beside(layer, x) {
-                return x;
-            }
-        }
+        let (layer, x, is_beyond) = self.layers.place(self.source.next_u64());
+        if is_beyond { self.beside(layer, x) } else { x }
     }
 
     /// `N` independent standard normals: the same as one by one.
     #[inline]
     pub fn normals_of<const N: usize>(&mut self) -> [f64; N] {
-        // Mostly all lie below the layers above: the source then stays in registers.
-        let mut source = self.source.clone();
-        let mut all = [0.0; N];
-        let mut are_below = true;
-        for normal in &mut all {
-            let (_, x, is_below) = self.layers.place(source.next_u64());
-            *normal = x;
-            are_below &= is_below;
-        }
-        if are_below {
-            self.source = source;
-            return all;
-        }
-        self.one_by_one()
+        let mut all = [[0.0; N]];
+        self.fill(&mut all);
+        let [all] = all;
+        all
     }
 
-    #[cold]
-    #[inline(never)]
-    fn one_by_one<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.normal())
+    /// Fills `all` with independent standard normals: the same as one by one.
+    #[inline]
+    pub fn fill<const N: usize>(&mut self, all: &mut [[f64; N]]) {
+        // Mostly all lie below the layers above: the source then stays in registers.
+        let mut source = self.source.clone();
+        for some in all {
+            for normal in some {
+                let (layer, x, is_beyond) = self.layers.place(source.next_u64());
+                *normal = x;
+                if is_beyond {
+                    self.source = source;
+                    *normal = self.beside(layer, x);
+                    source = self.source.clone();
+                }
+            }
+        }
+        self.source = source;
     }
 
     /// What becomes of an `x` in its layer, but not below the layer above: one of 80.
     #[cold]
-    fn beside(&mut self, layer: usize, x: f64) -> Option<f64> {
+    #[inline(never)]
+    fn beside(&mut self, layer: usize, x: f64) -> f64 {
         if layer == 0 {
-            return Some(self.tail().copysign(x));
+            return self.tail().copysign(x);
         }
         let Ziggurat { density, .. } = self.layers;
         let height = density[layer] + self.unit() * (density[layer + 1] - density[layer]);
-        (height < bell(x)).then_some(x)
+        if height < bell(x) { x } else { self.normal() }
     }
 
     /// A normal number beyond [`TAIL`], by Marsaglia's method.
@@ -177,12 +174,12 @@ struct Ziggurat {
 
 impl Ziggurat {
     /// The layer from the lowest bits, the place in it from the 53 highest, and whether that is
-    /// below the layer above.
+    /// not below the layer above.
     #[inline]
     fn place(&self, bits: u64) -> (usize, f64, bool) {
         let layer = (bits & 0xff) as usize;
         let x = (bits.cast_signed() >> 11) as f64 * self.step[layer];
-        (layer, x, x.abs() < self.width[layer + 1])
+        (layer, x, x.abs() >= self.width[layer + 1])
     }
 
     fn shared() -> &'static Self {

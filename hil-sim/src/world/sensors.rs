@@ -145,6 +145,9 @@ pub struct Sensors {
     pub mocap: Option<mocap::Mocap>,
 }
 
+/// How many of the channels are of the state.
+const OF_STATE: usize = 6;
+
 /// What a channel reads instead of what is there.
 #[derive(Clone, Copy)]
 enum Fault {
@@ -177,12 +180,11 @@ impl Channel {
         *self == Self { noise, bias, ..Self::default() }
     }
 
-    /// The error of this sample, in the channel's unit.
+    /// The error of this sample, in the channel's unit, with `normals` drawn where there is noise.
     #[inline]
-    fn error(&self, stream: &mut Stream) -> Vector3<f64> {
-        let [x, y, z] = self.bias;
-        let bias = Vector3::new(x, y, z);
-        if self.noise > 0.0 { bias + stream.normals() * self.noise } else { bias }
+    fn error(&self, normals: impl FnOnce() -> Vector3<f64>) -> Vector3<f64> {
+        let bias = Vector3::from(self.bias);
+        if self.noise > 0.0 { bias + normals() * self.noise } else { bias }
     }
 
     fn round(&self, value: Vector3<f64>) -> Vector3<f64> {
@@ -280,6 +282,8 @@ pub struct SensorModel {
     perfect: bool,
     /// Whether all channels of the state are plain: then nothing is asked of them, or of the past.
     plain: bool,
+    /// How many of them are noisy.
+    noisy: usize,
     /// Of the UAV's own position, velocity and specific force.
     own: [Memory; 3],
 }
@@ -303,9 +307,12 @@ impl SensorModel {
     /// `sensors` sampled every `period` s, from a flight that starts at `state`.
     #[must_use]
     pub fn new(sensors: Sensors, period: f64, state: &State<f64>, stream: Stream) -> Self {
-        let all = |is: fn(&Channel) -> bool| sensors.channels().iter().take(6).all(|(_, channel)| is(channel));
+        let of_state = sensors.channels().into_iter().take(OF_STATE).map(|(_, channel)| channel);
+        let all = |is: fn(&Channel) -> bool| of_state.clone().all(is);
         let (perfect, plain) = (all(Channel::is_off), all(Channel::is_plain));
-        Self { sensors, period, stream, before: *state, last: *state, perfect, plain, own: [Memory::default(); 3] }
+        let noisy = of_state.filter(|channel| channel.noise > 0.0).count();
+        let own = [Memory::default(); 3];
+        Self { sensors, period, stream, before: *state, last: *state, perfect, plain, noisy, own }
     }
 
     /// What is read of `state` at `t_s`, into `read`.
@@ -322,16 +329,21 @@ impl SensorModel {
 
     /// With bias and noise alone.
     fn read_plain(&mut self, state: &State<f64>, read: &mut State<f64>) {
-        let Self { sensors, stream, .. } = self;
-        let turned = state.rod + sensors.rod.error(stream).cross(&state.rod);
+        let Self { sensors, stream, noisy, .. } = self;
+        // All at once, which costs less than channel by channel.
+        let mut drawn = [[0.0; 3]; OF_STATE];
+        stream.fill(&mut drawn[..*noisy]);
+        let mut drawn = drawn.iter();
+        let mut error = |channel: &Channel| channel.error(|| drawn.next().copied().unwrap_or_default().into());
+        let turned = state.rod + error(&sensors.rod).cross(&state.rod);
         let rod = turned * (1.0 / turned.dot(&turned).sqrt());
         read.rod = rod;
-        read.attitude = orthonormal(&turn(&state.attitude, &sensors.attitude.error(stream)));
-        read.position = state.position + sensors.position.error(stream);
-        read.velocity = state.velocity + sensors.velocity.error(stream);
-        let rate = state.rod_rate + sensors.rod_rate.error(stream);
+        read.attitude = orthonormal(&turn(&state.attitude, &error(&sensors.attitude)));
+        read.position = state.position + error(&sensors.position);
+        read.velocity = state.velocity + error(&sensors.velocity);
+        let rate = state.rod_rate + error(&sensors.rod_rate);
         read.rod_rate = rate - rod * rod.dot(&rate);
-        read.body_rate = state.body_rate + sensors.body_rate.error(stream);
+        read.body_rate = state.body_rate + error(&sensors.body_rate);
     }
 
     /// With all that can go wrong.
@@ -341,7 +353,7 @@ impl SensorModel {
         let rod = {
             let channel = &sensors.rod;
             let aged = sample.aged(channel, &state.rod, &before.rod);
-            let turned = aged + channel.error(sample.stream).cross(&aged);
+            let turned = aged + channel.error(|| sample.stream.normals()).cross(&aged);
             let unit = turned / turned.dot(&turned).sqrt();
             channel.reading(channel.fault(t_s), unit, &last.rod)
         };
@@ -351,7 +363,7 @@ impl SensorModel {
                 Some(age) => state.attitude + (before.attitude - state.attitude) * age,
                 None => state.attitude,
             };
-            let turned = orthonormal(&turn(&aged, &channel.error(sample.stream)));
+            let turned = orthonormal(&turn(&aged, &channel.error(|| sample.stream.normals())));
             let fault = channel.fault(t_s);
             let column = |i| channel.reading(fault, turned.column(i).into(), &last.attitude.column(i).into());
             Matrix3::from_columns(&[column(0), column(1), column(2)])
@@ -412,7 +424,7 @@ impl Sample<'_> {
         before: &Vector3<f64>,
         last: &Vector3<f64>,
     ) -> Vector3<f64> {
-        let value = self.aged(channel, now, before) + channel.error(self.stream);
+        let value = self.aged(channel, now, before) + channel.error(|| self.stream.normals());
         channel.reading(channel.fault(self.t_s), value, last)
     }
 }

@@ -24,7 +24,7 @@
 //! After each, length and rate of a taut cable are put back along u, by an impulse as that of a
 //! cable that becomes taut.
 
-use controller::{Command, Matrix3, Vector3};
+use controller::{Command, Matrix3, State, Vector3};
 
 use super::body::{Bodies, Rates};
 use super::cable::Cable;
@@ -157,6 +157,12 @@ impl Tethered {
             attitude: attitude(x),
             body_rate: vector(x, 16),
         }
+    }
+
+    /// The state as the law takes it.
+    #[must_use]
+    pub fn state(&self) -> State<f64> {
+        self.bodies().state()
     }
 
     /// Whether the cable is taut.

@@ -37,6 +37,7 @@ impl Timing {
     }
 
     /// The length of the coming period as a share of the nominal one.
+    #[inline]
     pub(crate) fn stretch(&self, stream: &mut Stream) -> f64 {
         if self.jitter > 0.0 { 1.0 + stream.uniform(-self.jitter, self.jitter) } else { 1.0 }
     }
