@@ -64,6 +64,8 @@ pub fn deviation(position: &Vector3<f64>) -> f64 {
 pub struct Flight<L> {
     pub supervisor: Supervisor<f32, L>,
     pub body: Multibody,
+    /// τ_d that the law is not told of, N·m.
+    pub torque: Vector3<f64>,
     lag: f64,
     acting: Command<f64>,
     time: f64,
@@ -82,7 +84,8 @@ impl<L: Law<f32>> Flight<L> {
         let vehicle = VehicleParameters { payload_mass, ..VehicleParameters::default() };
         let acting = Command { thrust: applied, torque: Vector3::zeros() };
         supervisor.take_over(&state.cast(), Command::of_thrust(applied as f32)).unwrap();
-        Self { supervisor, body: Multibody::new(vehicle, state), lag, acting, time: 0.0 }
+        let torque = Vector3::zeros();
+        Self { supervisor, body: Multibody::new(vehicle, state), torque, lag, acting, time: 0.0 }
     }
 
     /// One control period. Every command is checked.
@@ -119,8 +122,8 @@ impl<L: Law<f32>> Flight<L> {
         for _ in 0..2 {
             self.acting.thrust += (command.thrust - self.acting.thrust) * share;
             self.acting.torque += (command.torque - self.acting.torque) * share;
-            let acting = self.acting;
-            self.body.advance(PERIOD / 2.0, |_| acting, |_, _| Loads::none());
+            let (acting, loads) = (self.acting, Loads { torque: self.torque, ..Loads::none() });
+            self.body.advance(PERIOD / 2.0, |_| acting, |_, _| loads);
         }
         assert!(self.body.is_finite());
         self.time += PERIOD;

@@ -385,6 +385,17 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         self.memory.observer.keep(known);
     }
 
+    /// Corrects the torque alone, by the `body_rate` of a UAV whose load is not known.
+    #[cold]
+    pub(crate) fn sample_body(&mut self, body_rate: &Vector3<T>) {
+        let Memory { weighed, last, observer, actuators, .. } = &mut self.memory;
+        let turned = State { body_rate: *body_rate, ..*last };
+        let (after, per_newton_metre) =
+            Model::at(weighed, &turned).body(&actuators.applied().torque, &observer.estimate().torque);
+        let before = after + per_newton_metre.component_mul(&actuators.step().torque);
+        observer.correct_body(body_rate, &before, &after);
+    }
+
     /// The torque found, N·m, in body axes.
     pub(crate) fn torque(&self) -> &Vector3<T> {
         &self.memory.observer.estimate().torque

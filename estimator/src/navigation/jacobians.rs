@@ -118,7 +118,7 @@ fn flow(state: &Strapdown<f64>, step: f64) -> [[f64; ERRORS]; ERRORS] {
         let mut covariance: Covariance<f64> = Covariance::diagonal(&deviations);
         let force = state.attitude * state.force;
         spread.move_with_attitude(&mut covariance, &force);
-        spread.move_with_biases(&mut covariance, &state.attitude);
+        spread.move_with_biases(&mut covariance, &state.attitude, &Vector3::zeros());
         for i in 0..ERRORS {
             f[i][component] = (covariance.get(i, component) - if i == component { 1.0 } else { 0.0 }) / step;
         }
@@ -159,7 +159,7 @@ fn the_covariance_moves_as_a_dense_product_has_it() {
         let force = state.attitude * state.force;
         let spread = Spread::new(&noise, step);
         spread.move_with_attitude(&mut covariance, &force);
-        spread.move_with_biases(&mut covariance, &state.attitude);
+        spread.move_with_biases(&mut covariance, &state.attitude, &Vector3::zeros());
         let phi = |i: usize, k: usize| f[i][k] * step + if i == k { 1.0 } else { 0.0 };
         for i in 0..ERRORS {
             for j in 0..=i {

@@ -38,6 +38,9 @@ const STUBBORN: u8 = 15;
 const GATE: f64 = 100.0;
 /// Fixes come while the last one is not older, s.
 const RECENT: f64 = 0.5;
+/// Deviations of tilt and heading, rad, where a restart finds the velocity off, too: it is the
+/// attitude that has led it astray.
+const MISLED: [f64; 2] = [0.3, 1.0];
 /// What an unread accelerometer and gyro might have said, m/s² and rad/s.
 const UNREAD: [f64; 2] = [3.0, 0.3];
 
@@ -320,12 +323,16 @@ impl<T: Real> Navigation<T> {
         if let Some(position) = position {
             let innovation = position - x - reach;
             let deviations = believed(position_accuracy, least[0]);
-            if self.is_outlier(&innovation, deviations) {
+            if self.is_outlier(index::POSITION, &innovation, deviations) {
                 self.refused = self.refused.saturating_add(1);
                 if self.refused < STUBBORN {
                     return Err(Refused::Outlier);
                 }
-                self.restart(&innovation, velocity.map(|velocity| velocity - v - moving), deviations);
+                if let Some(velocity) = velocity {
+                    let faster = velocity - v - moving;
+                    self.mistrust(&faster, believed(velocity_accuracy, least[1]));
+                }
+                self.restart(&innovation, deviations);
                 accepted = Accepted::Reset;
             } else {
                 self.wait_at(Kind::Position, &innovation, deviations, age, lever);
@@ -345,17 +352,31 @@ impl<T: Real> Navigation<T> {
         Ok(accepted)
     }
 
-    fn is_outlier(&self, innovation: &Vector3<T>, [across, down]: [T; 2]) -> bool {
+    /// Whether a position or velocity, whose errors begin `at`, is off by more than can be.
+    fn is_outlier(&self, at: usize, innovation: &Vector3<T>, [across, down]: [T; 2]) -> bool {
         [across, across, down].into_iter().enumerate().any(|(axis, deviation)| {
             let square = innovation.get(axis).map_or(T::zero(), |&along| along * along);
-            square > (deviation * deviation + self.covariance.get(axis, axis)) * T::lit(GATE)
+            square > (deviation * deviation + self.covariance.get(at + axis, at + axis)) * T::lit(GATE)
         })
     }
 
+    /// Takes the velocity of a restart, which is off by so much. Where that is more than can be,
+    /// attitude and gyro's bias have led it astray, and are looked for as at a start.
+    fn mistrust(&mut self, off: &Vector3<T>, deviations: [T; 2]) {
+        if self.is_outlier(index::VELOCITY, off, deviations) {
+            let ([tilt, heading], gyro) = (MISLED.map(T::lit), self.params.noise.start_gyro);
+            for (component, deviation) in [tilt, tilt, heading].into_iter().enumerate() {
+                self.covariance.forget(index::ATTITUDE + component, deviation * deviation);
+                self.covariance.forget(index::GYRO + component, gyro * gyro);
+            }
+            self.state.gyro_bias = Vector3::zeros();
+        }
+        self.state.velocity += off;
+    }
+
     /// Starts anew from a fix that is off by so much.
-    fn restart(&mut self, off: &Vector3<T>, velocity: Option<Vector3<T>>, [across, down]: [T; 2]) {
+    fn restart(&mut self, off: &Vector3<T>, [across, down]: [T; 2]) {
         self.state.position += off;
-        self.state.velocity += velocity.unwrap_or_else(Vector3::zeros);
         self.ring.restart(&self.state.position, &self.state.velocity);
         let quick = T::lit(4.0);
         for (component, deviation) in [across, across, down].into_iter().enumerate() {
@@ -439,7 +460,8 @@ impl<T: Real> Navigation<T> {
 
     /// The second half, with its noise.
     fn finish_spread(&mut self) {
-        self.spread.move_with_biases(&mut self.covariance, &self.state.attitude);
+        let Strapdown { attitude, body_rate, .. } = &self.state;
+        self.spread.move_with_biases(&mut self.covariance, attitude, body_rate);
         let [v, t] = UNREAD.map(|unread| T::lit(unread) * self.params.period * self.unread);
         for i in 0..3 {
             self.covariance.add(index::VELOCITY + i, v * v);

@@ -19,10 +19,18 @@ pub(crate) struct Spread<T> {
     step: T,
     /// Added to the variances of velocity, attitude, gyro's and accelerometer's bias.
     added: [T; 4],
+    /// Added to that of the attitude for each (rad/s)² of body rate.
+    unscaled: T,
     /// Largest variances of the biases of gyro and accelerometer: walks go no further than where
     /// they started.
     most: [T; 2],
 }
+
+/// Error of the gyro in proportion to the body rate, by its scale and its axes, and for how long one turn keeps it,
+/// s: (10) has no state for it. Below so many rad/s, which flights on a path keep to, the bias takes it up.
+const UNSCALED: f64 = 0.01;
+const TURNING: f64 = 0.5;
+const TURNED: f64 = 8.0;
 
 /// The variance that no component falls below.
 const FLOOR: f64 = 1e-12;
@@ -32,6 +40,7 @@ impl<T: Real> Spread<T> {
         let walk = |density: T| density * density * step;
         Self {
             step,
+            unscaled: walk(T::lit(UNSCALED)) * T::lit(TURNING),
             added: [
                 walk(noise.accelerometer),
                 walk(noise.gyro),
@@ -53,9 +62,14 @@ impl<T: Real> Spread<T> {
         });
     }
 
-    /// Velocity and attitude move with the biases; Q.
+    /// Velocity and attitude move with the biases; Q of a vehicle that turns at `body_rate`, rad/s.
     #[inline(never)]
-    pub(crate) fn move_with_biases(&self, covariance: &mut Covariance<T>, attitude: &Matrix3<T>) {
+    pub(crate) fn move_with_biases(
+        &self,
+        covariance: &mut Covariance<T>,
+        attitude: &Matrix3<T>,
+        body_rate: &Vector3<T>,
+    ) {
         let r = attitude * -self.step;
         let turned = |[x, y, z]: [T; 3]| {
             [r.m11 * x + r.m12 * y + r.m13 * z, r.m21 * x + r.m22 * y + r.m23 * z, r.m31 * x + r.m32 * y + r.m33 * z]
@@ -63,6 +77,8 @@ impl<T: Real> Spread<T> {
         couple::<T, { index::VELOCITY }, { index::ACCELEROMETER }>(covariance, turned);
         couple::<T, { index::ATTITUDE }, { index::GYRO }>(covariance, turned);
         let [velocity, attitude, gyro, accelerometer] = self.added;
+        let turning = (body_rate.dot(body_rate) - T::lit(TURNED * TURNED)).max(T::zero());
+        let attitude = attitude + self.unscaled * turning;
         let [most_gyro, most_accelerometer] = self.most;
         for i in 0..3 {
             covariance.add(index::VELOCITY + i, velocity);

@@ -210,7 +210,13 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         match self.mode {
             Mode::Off | Mode::Fault => self.ground(None, T::zero()),
             Mode::Idle => self.ground(None, self.sampler.actuation().least_thrust()),
-            _ => self.hold(None, uav, None),
+            mode => {
+                // On the ground, and near it, something else turns it.
+                if mode == Mode::Hold {
+                    self.sampler.sample_body(&uav.body_rate);
+                }
+                self.hold(None, uav, None)
+            }
         }
     }
 
