@@ -88,6 +88,8 @@ fn flown(scenario: &Scenario, run: u64) -> (End, Vec<Mode>, f64, f64) {
         if modes.last() != Some(&decision.mode) {
             modes.push(decision.mode);
         }
+        // It was told where the UAV stands, and no fix says otherwise.
+        assert_eq!(sight.navigation().health().resets, 0);
         let bodies = moment.body.bodies();
         let line = bodies.position - bodies.uav_position;
         // Within a thousandth of its length, which a load that falls off exceeds, and off the

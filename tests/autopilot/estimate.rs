@@ -253,7 +253,16 @@ fn it_flies_from_the_ground_to_the_ground_with_nothing_that_sees_the_load() {
         let path =
             [Mode::Off, Mode::Idle, Mode::TakeOff, Mode::Hold, Mode::Join, Mode::Follow, Mode::Land, Mode::Off];
         assert_eq!(field.modes, path, "source {source}: {:?}", field.said);
-        let words = ["idle", "taking off", "hold", "joining the path", "on the path", "landing", "off"];
+        let words = [
+            "idle",
+            "taking off",
+            "hold: rod not known yet",
+            "hold",
+            "joining the path",
+            "on the path",
+            "landing",
+            "off",
+        ];
         assert_eq!(field.said, words, "source {source}");
         let bodies = field.world.body().bodies();
         assert!(bodies.velocity.norm() < 0.01 && bodies.uav_velocity.norm() < 0.01, "{bodies:?}");

@@ -351,6 +351,8 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
     /// estimates.
     pub(crate) fn resume(&mut self, state: &State<T>) {
         self.memory.observer.restart(state);
+        // What was implied before may have been of a slack cable, or of a rod that was not known.
+        self.memory.bounce = Bounce::none(&self.memory.vehicle);
     }
 
     /// The state now by the model, where none was sampled: what the last one has become in a

@@ -352,11 +352,14 @@ impl<T: Real> Navigation<T> {
         Ok(accepted)
     }
 
-    /// Whether a position or velocity, whose errors begin `at`, is off by more than can be.
+    /// Whether a position or velocity, whose errors begin `at`, is off by more than can be. After one
+    /// that was, the filter's own doubt does not count: it grows without fixes, and by it the next
+    /// would be taken for true and the jump for a velocity.
     fn is_outlier(&self, at: usize, innovation: &Vector3<T>, [across, down]: [T; 2]) -> bool {
+        let doubts = if self.refused == 0 { T::one() } else { T::zero() };
         [across, across, down].into_iter().enumerate().any(|(axis, deviation)| {
             let square = innovation.get(axis).map_or(T::zero(), |&along| along * along);
-            square > (deviation * deviation + self.covariance.get(at + axis, at + axis)) * T::lit(GATE)
+            square > (deviation * deviation + self.covariance.get(at + axis, at + axis) * doubts) * T::lit(GATE)
         })
     }
 

@@ -63,6 +63,10 @@ pub(crate) struct Strapdown<T> {
     pub(crate) acceleration: Vector3<T>,
 }
 
+/// An error turns the attitude no further about an axis at a time, rad: what Exp to second order
+/// leaves of right angles and lengths is then straightened.
+const TURN: f64 = 0.3;
+
 impl<T: Real> Strapdown<T> {
     /// One period.
     #[inline(always)]
@@ -106,8 +110,8 @@ impl<T: Real> Strapdown<T> {
     /// Adds an error. Returns how the motion has moved, for what remembers it.
     pub(crate) fn inject(&mut self, error: &[T; ERRORS]) -> Moved<T> {
         let [x1, x2, x3, v1, v2, v3, t1, t2, t3, g1, g2, g3, a1, a2, a3] = *error;
-        let (position, velocity, turn) =
-            (Vector3::new(x1, x2, x3), Vector3::new(v1, v2, v3), Vector3::new(t1, t2, t3));
+        let (position, velocity) = (Vector3::new(x1, x2, x3), Vector3::new(v1, v2, v3));
+        let turn = Vector3::new(t1, t2, t3).map(|angle| angle.clamp(T::lit(-TURN), T::lit(TURN)));
         let bias = Vector3::new(a1, a2, a3);
         let force = self.attitude * self.force;
         let acceleration = turn.cross(&force) - self.attitude * bias;

@@ -16,7 +16,7 @@ pub enum Cable {
 pub enum Validity {
     /// As good as its standard deviation says.
     Valid,
-    /// Not known yet to 0.15 rad, or not for a second since the filter began.
+    /// Not known to 0.15 rad, or to 0.04 rad an axis not for five seconds yet.
     Converging,
     /// The thrust model and the rod have disagreed for a second beyond what noise explains:
     /// something is not as told.

@@ -56,14 +56,16 @@ const ASTRAY: f64 = 20.0;
 const WILD: f64 = 25.0;
 /// Fastest rod, 1/s.
 const FASTEST: f64 = 30.0;
-/// Cycles from a start in which ν²/S has its mean: 1 s at 500 Hz.
-const SEEN: u8 = 17;
 /// Cycles after which what was found with a valid rod is believed without one: 10 s at 500 Hz.
 const PROVEN: u8 = 167;
 /// Cycles for which the rod has to be known before the mass is looked for: 1.2 s at 500 Hz. Until
 /// then a very light load blown far out explains what is measured as well, and a filter that may
 /// choose finds it: on a wide swing its covariance is too small for a moment, and a moment is enough.
 const SURE: u8 = 20;
+/// Cycles for which the rod has to be known before it is valid: 5 s at 500 Hz. The mass that is found
+/// meanwhile moves rod and rate by more than their deviations say, and a law that joins a path on
+/// them swings.
+const SETTLED: u8 = 84;
 /// Standard deviation of an accelerometer that was not read, m/s².
 const UNREAD: f64 = 2.0;
 
@@ -117,6 +119,8 @@ pub struct Payload<T> {
     is_mass_found: bool,
     /// Cycles for which the rod has been known.
     known: u8,
+    /// Whether it has been known for long since the start.
+    is_settled: bool,
     health: Health<T>,
     /// Corrections of a batch that is not complete.
     pending: [T; ERRORS],
@@ -157,6 +161,7 @@ impl<T: Real> Payload<T> {
             age: 0,
             is_mass_found: false,
             known: 0,
+            is_settled: false,
             health: Health {
                 validity: Validity::Converging,
                 rod_deviation: rod * T::lit(core::f64::consts::SQRT_2),
@@ -354,6 +359,7 @@ impl<T: Real> Payload<T> {
             5 => {
                 self.settle(CYCLE - 1);
                 self.known = if thrust::is_rod_known(&self.covariance) { self.known.saturating_add(1) } else { 0 };
+                self.is_settled |= self.known >= SETTLED;
                 self.is_mass_found |= self.covariance.get(index::MASS, index::MASS) < T::lit(0.15 * 0.15);
                 if self.is_astray() {
                     self.restart();
@@ -425,7 +431,7 @@ impl<T: Real> Payload<T> {
         }
         self.age = 0;
         self.is_mass_found = false;
-        self.known = 0;
+        (self.known, self.is_settled) = (0, false);
         self.health.surprise = [T::one(); 3];
         self.load_surprise = [T::one(); 2];
         self.fresh = [Innovations::none(); 2];
@@ -555,7 +561,7 @@ impl<T: Real> Payload<T> {
         let [x, y, z] = self.health.surprise;
         if self.watch.cable == Cable::Slack {
             Validity::Slack
-        } else if rod_deviation > T::lit(KNOWN) || self.age < SEEN {
+        } else if rod_deviation > T::lit(KNOWN) || !self.is_settled {
             Validity::Converging
         } else if x.max(y).max(z) > T::lit(CONSISTENT) {
             Validity::Inconsistent

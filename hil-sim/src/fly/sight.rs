@@ -111,8 +111,14 @@ impl Sight {
         let period = 1.0 / scenario.controller.rate_hz;
         let sensors = &scenario.sensors;
         let mut told = seed.stream(Purpose::Told);
-        let place = state.position - state.rod * scenario.vehicle.rod_length;
-        let velocity = state.velocity - state.rod_rate * scenario.vehicle.rod_length;
+        // With a slack cable the UAV is not where the rod ends.
+        let (place, velocity) = scenario.bodies.as_ref().map_or_else(
+            || {
+                let length = scenario.vehicle.rod_length;
+                (state.position - state.rod * length, state.velocity - state.rod_rate * length)
+            },
+            |bodies| (bodies.uav_position, bodies.uav_velocity),
+        );
         // A receiver's accuracy, or motion capture's, is what the start is known to.
         let deviation = sensors.gnss.map_or(0.01, |gnss| gnss.position_noise[0].hypot(gnss.slow[0]));
         let turn = told.normals().component_mul(&Vector3::new(0.005, 0.005, 0.05));
