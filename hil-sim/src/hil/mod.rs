@@ -9,7 +9,7 @@
 //! same frame is sent again, and the target answers the same number with the same command. So
 //! neither a slow host, nor a noisy line, nor a line that was cut and is back changes any result.
 //!
-//! A scenario with an estimator is flown on the vehicle's [instruments]: they are sent before each
+//! A scenario with an estimator is flown on the vehicle's `instruments`: they are sent before each
 //! state frame, which is then empty, and the target finds navigation and load by itself.
 //!
 //! A [`Station`] may command the target in place of a scenario's requests: what it says goes to the
