@@ -355,6 +355,88 @@ fn a_load_that_is_measured_wrong_for_two_seconds_costs_no_height() {
     }
 }
 
+/// The rod's rate is measured as it was when following began to need it, made square to the rod by
+/// whoever builds the state: no bit of it stands still. The law swings the load up on it until the
+/// rod is not where that rate leads.
+#[test]
+fn a_rods_rate_that_stays_as_it_was_is_not_flown_on() {
+    let mut flight = hanging(PAPER, 10.0);
+    for _ in 0..5000 {
+        flight.step(Request::Follow);
+    }
+    let then = flight.state();
+    let (mut lost, mut swing, mut faults) = (0.0_f64, 0.0_f64, 0);
+    let mut last = None;
+    for step in 0..20_000 {
+        let (uav, mut state) = (flight.uav(), flight.state());
+        if step < 4000 {
+            state.rod_rate = then.rod_rate - state.rod * state.rod.dot(&then.rod_rate);
+        }
+        let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: None };
+        let output = flight.supervisor.step(measured, Request::Follow);
+        flight.world.advance(&output.command);
+        lost = lost.max(flight.world.uav.position.z - f64::from(then.position.z) + PAPER.length);
+        swing = swing.max(norm(&(flight.world.load_velocity - flight.world.uav.velocity)));
+        faults += usize::from(output.fault == Some(Fault::Contradiction));
+        last = Some(output.mode);
+    }
+    println!("{lost:.2} m lost, {swing:.2} m/s apart, contradicted for {:.1} s", PERIOD * faults as f64);
+    assert!(faults > 0, "not noticed");
+    // As fast as a load that has been pulled aside by 20° and let go: √(2 g L (1 − cos 20°)).
+    assert!(swing < (2.0 * 9.81 * PAPER.length * (1.0 - 20_f64.to_radians().cos())).sqrt(), "{swing} m/s apart");
+    assert!(lost < 1.0, "{lost} m lost");
+    assert_eq!(last, Some(Mode::Follow));
+}
+
+/// From any of ten moments of a landing on the UAV's own position or velocity stands still, reads
+/// zeros, or is missing, for three seconds or for good: each is carried on from the rest, and by an
+/// accelerometer.
+#[test]
+fn a_landing_is_as_slow_on_half_a_navigation() {
+    type Wrong = fn(&Uav<f32>, &Uav<f32>) -> Option<Uav<f32>>;
+    let kinds: [(&str, f64, Wrong); 7] = [
+        ("position stands for 3 s", 3.0, |now, then| Some(Uav { position: then.position, ..*now })),
+        ("position stands", f64::INFINITY, |now, then| Some(Uav { position: then.position, ..*now })),
+        ("position of zeros for 3 s", 3.0, |now, _| Some(Uav { position: Vector3::zeros(), ..*now })),
+        ("position of zeros", f64::INFINITY, |now, _| Some(Uav { position: Vector3::zeros(), ..*now })),
+        ("velocity stands", f64::INFINITY, |now, then| Some(Uav { velocity: then.velocity, ..*now })),
+        ("velocity of zeros", f64::INFINITY, |now, _| Some(Uav { velocity: Vector3::zeros(), ..*now })),
+        ("none for 3 s", 3.0, |_, _| None),
+    ];
+    for (name, lasts, wrong) in kinds {
+        let mut worst = [0.0_f64; 2];
+        for begin in 0..10 {
+            let begin = 2.0 * f64::from(begin);
+            let mut flight = hanging(PAPER, 3.0);
+            let mut then = None;
+            let mut before = V::zeros();
+            let mut is_off = false;
+            for step in 0..40_000 {
+                let (uav, state) = (flight.uav(), flight.state());
+                let World { uav: Uav { velocity, attitude, .. }, .. } = &flight.world;
+                let force = attitude.tr_mul(&((velocity - before) / PERIOD - V::new(0.0, 0.0, 9.81)));
+                before = *velocity;
+                let since = f64::from(step) * PERIOD - begin;
+                let told =
+                    if (0.0..lasts).contains(&since) { wrong(&uav, then.get_or_insert(uav)) } else { Some(uav) };
+                let specific_force = Some(force.map(|f| f as f32));
+                let measured = Measured { state: Some(&state), uav: told.as_ref(), specific_force };
+                let output = flight.supervisor.step(measured, Request::Land);
+                flight.world.advance(&output.command);
+                is_off = output.mode == Mode::Off;
+                if is_off {
+                    break;
+                }
+            }
+            let World { uav_touch, load_touch, .. } = flight.world;
+            assert!(is_off, "{name} from {begin} s on: not landed");
+            worst = [worst[0].max(load_touch), worst[1].max(uav_touch)];
+        }
+        println!("{name}: load {:.2}, UAV {:.2} m/s", worst[0], worst[1]);
+        assert!(worst[0] <= 0.6 && worst[1] <= 0.6, "{name}: {worst:?} m/s");
+    }
+}
+
 /// For two seconds of following attitude or body rate is not measured: each is found from the
 /// other, and the UAV holds. An accelerometer that reads zeros changes nothing.
 #[test]

@@ -77,6 +77,18 @@ impl<T: Real> Cable<T> {
         self.pull.resume(velocity);
     }
 
+    /// The UAV's velocity, m/s, at the end of a period as of [`sample`](Self::sample), where none is
+    /// measured.
+    pub(crate) fn carried(
+        &self,
+        vehicle: &Vehicle<T>,
+        attitude: &Matrix3<T>,
+        thrust: T,
+        specific: Option<&Vector3<T>>,
+    ) -> Vector3<T> {
+        self.pull.carried(vehicle, attitude, thrust, specific)
+    }
+
     /// Averages the usual pull anew.
     pub(crate) fn learn(&mut self) {
         self.learning = T::zero();

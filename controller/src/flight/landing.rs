@@ -17,11 +17,12 @@ const AROUND: f64 = 0.4;
 /// Nearer to above the load than this, m, aside is forward.
 const ABOVE: f64 = 0.05;
 /// A load stands when its speed has been below this share of the descent's, for so long, s, after
-/// it sank at that share; or, where it has not sunk, with this share of its weight gone from the
+/// it sank at that share for so long, s; or, where it has not sunk, with this share of its weight gone from the
 /// pull.
 const STILL: f64 = 0.2;
 const TOUCHED: f64 = 0.05;
 const SUNK: f64 = 0.4;
+const SINKING: f64 = 0.5;
 const UNWEIGHTED: f64 = 0.5;
 /// When the load comes to stand the UAV is still sinking, with a cable that has just gone slack.
 /// For so long, s, its velocity is reckoned from its thrust and brought to this, m/s, so that the
@@ -43,8 +44,8 @@ pub(crate) struct Landing<T> {
     aside: Vector3<T>,
     /// It was set down by the rod alone.
     is_by_rod: bool,
-    /// The load has sunk, and for how long it has stood still, s.
-    has_sunk: bool,
+    /// For how long the load has sunk, up to [`SINKING`], and stood still, s.
+    sunk: T,
     still: T,
     /// The UAV's reckoned velocity along n3, m/s, and from when it was set down the level pull,
     /// m/s², and the rod's angle from the vertical, rad.
@@ -71,7 +72,7 @@ impl<T: Real> Landing<T> {
             set_down: T::zero(),
             aside: Vector3::zeros(),
             is_by_rod: false,
-            has_sunk: false,
+            sunk: T::zero(),
             still: T::zero(),
             falling: T::zero(),
             wind: Vector3::zeros(),
@@ -112,6 +113,11 @@ impl<T: Real> Landing<T> {
         self.set_down > T::zero()
     }
 
+    /// Whether it was set down by the rod alone, which keeps the cable taut.
+    pub(crate) fn is_by_rod(&self) -> bool {
+        self.is_by_rod
+    }
+
     /// By the rod alone, a `period` (s) on: what to fly once the load stands. The last `thrust` (N)
     /// acted along −b3; `usual` (N) hung from the UAV before, and `down` (N) does now; `pull`
     /// (m/s²) is observed.
@@ -130,14 +136,17 @@ impl<T: Real> Landing<T> {
         }
         let params = vehicle.params();
         let sinking = state.velocity.z;
-        self.has_sunk |= sinking > descent * T::lit(SUNK);
+        if sinking > descent * T::lit(SUNK) {
+            self.sunk = (self.sunk + period).min(T::lit(SINKING));
+        }
+        let has_sunk = self.sunk >= T::lit(SINKING);
         let mut uav = Uav::of(state, vehicle);
         if !self.is_set_down() {
-            let is_still = sinking < descent * T::lit(STILL);
+            let is_still = sinking.abs() < descent * T::lit(STILL);
             self.still = if is_still { self.still + period } else { T::zero() };
             let gone = usual - down;
             let is_unweighted = gone > params.payload_mass * params.gravity * T::lit(UNWEIGHTED);
-            if self.still < T::lit(TOUCHED) || !(self.has_sunk || is_unweighted) {
+            if self.still < T::lit(TOUCHED) || !(has_sunk || is_unweighted) {
                 return None;
             }
             self.is_by_rod = true;
@@ -145,10 +154,10 @@ impl<T: Real> Landing<T> {
             self.wind = Vector3::new(pull.x, pull.y, T::zero());
             let level = state.rod.x * state.rod.x + state.rod.y * state.rod.y;
             self.from = level.sqrt().atan2(state.rod.z);
-            self.falling = if self.has_sunk { descent } else { T::zero() };
+            self.falling = if has_sunk { descent } else { T::zero() };
         } else if sinking > descent * T::lit(SUNK) {
             // It hangs after all.
-            *self = Self { has_sunk: true, ..Self::begin() };
+            *self = Self::begin();
             return None;
         }
         self.set_down += period;

@@ -72,14 +72,44 @@ impl<T: Real> Pull<T> {
         self.velocity = *velocity;
     }
 
-    /// Ends a period in which `thrust` (N) acted along −`b3`, with the UAV's sampled `velocity`.
-    #[inline(never)]
-    pub(crate) fn sample(&mut self, vehicle: &Vehicle<T>, velocity: &Vector3<T>, attitude: &Matrix3<T>, thrust: T) {
+    /// v̂ at the end of a period in which `thrust` (N) acted along −`b3`, m/s.
+    #[inline]
+    fn predicted(&self, vehicle: &Vehicle<T>, attitude: &Matrix3<T>, thrust: T) -> Vector3<T> {
         let b3: Vector3<T> = attitude.column(2).into();
         let params = vehicle.params();
         let mut acceleration = self.force - b3 * (thrust / params.uav_mass);
         acceleration.z += params.gravity;
-        let predicted = self.velocity + acceleration * self.period;
+        self.velocity + acceleration * self.period
+    }
+
+    /// The velocity, m/s, that is to be sampled where none is measured: where the `specific` force
+    /// (body axes, m/s²) leads, if it has led to the velocity so far, or v̂.
+    #[cold]
+    pub(crate) fn carried(
+        &self,
+        vehicle: &Vehicle<T>,
+        attitude: &Matrix3<T>,
+        thrust: T,
+        specific: Option<&Vector3<T>>,
+    ) -> Vector3<T> {
+        match specific.and_then(|specific| self.led_by(vehicle, attitude, specific)) {
+            Some(step) if is_within(&(self.velocity - self.led), T::lit(OFF * OFF)) => self.led + step,
+            _ => self.predicted(vehicle, attitude, thrust),
+        }
+    }
+
+    /// The change of the velocity, m/s, over a period with a `specific` force that may be one.
+    #[inline]
+    fn led_by(&self, vehicle: &Vehicle<T>, attitude: &Matrix3<T>, specific: &Vector3<T>) -> Option<Vector3<T>> {
+        let down = Vector3::new(T::zero(), T::zero(), vehicle.params().gravity);
+        let is_possible = is_within(specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC));
+        is_possible.then(|| (attitude * specific + down) * self.period)
+    }
+
+    /// Ends a period in which `thrust` (N) acted along −`b3`, with the UAV's sampled `velocity`.
+    #[inline(never)]
+    pub(crate) fn sample(&mut self, vehicle: &Vehicle<T>, velocity: &Vector3<T>, attitude: &Matrix3<T>, thrust: T) {
+        let predicted = self.predicted(vehicle, attitude, thrust);
         let error = velocity - predicted;
         self.velocity = predicted + error * self.velocity_gain;
         self.force += error * self.force_gain;
@@ -95,19 +125,17 @@ impl<T: Real> Pull<T> {
         thrust: T,
         specific: &Vector3<T>,
     ) {
-        if !is_within(specific, T::lit(MOST_SPECIFIC * MOST_SPECIFIC)) {
+        let Some(step) = self.led_by(vehicle, attitude, specific) else {
             return self.sample(vehicle, velocity, attitude, thrust);
-        }
-        let specific = attitude * specific;
-        let mut led = self.led + specific * self.period;
-        led.z += vehicle.params().gravity * self.period;
+        };
+        let led = self.led + step;
         let off = velocity - led;
         self.led = led + off * (self.period * T::lit(1.0 / FORGOTTEN));
         if !is_within(&off, T::lit(OFF * OFF)) {
             return self.sample(vehicle, velocity, attitude, thrust);
         }
         let b3: Vector3<T> = attitude.column(2).into();
-        let pull = specific + b3 * (thrust / vehicle.params().uav_mass);
+        let pull = attitude * specific + b3 * (thrust / vehicle.params().uav_mass);
         self.force += (pull - self.force) * self.follow_gain;
         self.velocity = *velocity;
     }

@@ -16,7 +16,8 @@ pub enum Cable {
 pub enum Validity {
     /// As good as its standard deviation says.
     Valid,
-    /// Not known to 0.15 rad, or to 0.04 rad an axis not for five seconds yet.
+    /// Not known to 0.15 rad, or not to 0.04 rad an axis for six seconds, or to 0.15 rad for twelve,
+    /// yet.
     Converging,
     /// The thrust model and the rod have disagreed for a second beyond what noise explains:
     /// something is not as told.

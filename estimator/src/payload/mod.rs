@@ -62,10 +62,11 @@ const PROVEN: u8 = 167;
 /// then a very light load blown far out explains what is measured as well, and a filter that may
 /// choose finds it: on a wide swing its covariance is too small for a moment, and a moment is enough.
 const SURE: u8 = 20;
-/// Cycles for which the rod has to be known before it is valid: 5 s at 500 Hz. The mass that is found
-/// meanwhile moves rod and rate by more than their deviations say, and a law that joins a path on
-/// them swings.
-const SETTLED: u8 = 84;
+/// Half cycles for which the rod has to be known before it is valid: 6 s at 500 Hz. The mass that is
+/// found meanwhile moves rod and rate by more than their deviations say, and a law that joins a path
+/// on them swings. A cycle in which the rod is known to [`KNOWN`] only counts half: where the noise is
+/// told three times too large that may be all that a UAV at rest comes to know.
+const SETTLED: u8 = 202;
 /// Standard deviation of an accelerometer that was not read, m/s².
 const UNREAD: f64 = 2.0;
 
@@ -119,8 +120,8 @@ pub struct Payload<T> {
     is_mass_found: bool,
     /// Cycles for which the rod has been known.
     known: u8,
-    /// Whether it has been known for long since the start.
-    is_settled: bool,
+    /// For how many half cycles it has been, up to [`SETTLED`], which it keeps.
+    settled: u8,
     health: Health<T>,
     /// Corrections of a batch that is not complete.
     pending: [T; ERRORS],
@@ -161,7 +162,7 @@ impl<T: Real> Payload<T> {
             age: 0,
             is_mass_found: false,
             known: 0,
-            is_settled: false,
+            settled: 0,
             health: Health {
                 validity: Validity::Converging,
                 rod_deviation: rod * T::lit(core::f64::consts::SQRT_2),
@@ -359,12 +360,12 @@ impl<T: Real> Payload<T> {
             5 => {
                 self.settle(CYCLE - 1);
                 self.known = if thrust::is_rod_known(&self.covariance) { self.known.saturating_add(1) } else { 0 };
-                self.is_settled |= self.known >= SETTLED;
                 self.is_mass_found |= self.covariance.get(index::MASS, index::MASS) < T::lit(0.15 * 0.15);
                 if self.is_astray() {
                     self.restart();
                 }
                 self.health = self.judge();
+                self.get_sure();
                 self.age = self.age.saturating_add(1);
             }
             6 => {
@@ -431,7 +432,7 @@ impl<T: Real> Payload<T> {
         }
         self.age = 0;
         self.is_mass_found = false;
-        (self.known, self.is_settled) = (0, false);
+        (self.known, self.settled) = (0, 0);
         self.health.surprise = [T::one(); 3];
         self.load_surprise = [T::one(); 2];
         self.fresh = [Innovations::none(); 2];
@@ -557,11 +558,23 @@ impl<T: Real> Payload<T> {
         }
     }
 
+    /// Counts towards [`SETTLED`], once a cycle.
+    fn get_sure(&mut self) {
+        if self.settled < SETTLED {
+            let is_vague = self.health.rod_deviation > T::lit(KNOWN);
+            self.settled = match (self.known, is_vague) {
+                (1.., _) => self.settled + 2,
+                (0, false) => self.settled + 1,
+                (0, true) => 0,
+            };
+        }
+    }
+
     fn validity(&self, rod_deviation: T) -> Validity {
         let [x, y, z] = self.health.surprise;
         if self.watch.cable == Cable::Slack {
             Validity::Slack
-        } else if rod_deviation > T::lit(KNOWN) || !self.is_settled {
+        } else if rod_deviation > T::lit(KNOWN) || self.settled < SETTLED {
             Validity::Converging
         } else if x.max(y).max(z) > T::lit(CONSISTENT) {
             Validity::Inconsistent

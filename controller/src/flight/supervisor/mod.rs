@@ -24,6 +24,7 @@ use crate::law::solution::{Answer, Solution};
 use crate::sampled::actuator::{Actuation, ActuatorLimits};
 use crate::sampled::controller::Controller;
 use crate::sampled::sampler::Sampler;
+use senses::Doubt;
 
 /// A law, supervised: it answers every input. It owns the sampled memory and lends it to the law,
 /// or to hold.
@@ -260,21 +261,27 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.is_by_law = false;
         self.motion.pass();
         let uav = measured.uav.filter(|uav| uav.check().is_ok());
+        let carried = uav.and_then(|uav| self.see_uav(uav, measured.specific_force.as_ref()));
+        let uav = carried.as_ref().or(uav);
         let fault = match measured.state {
             None => Fault::NoState,
             Some(state) => match state.check().and_then(|()| self.check_rates(state)) {
                 Err(channel) => Fault::State(channel),
-                Ok(()) => match self.believe(state, uav) {
-                    Ok(uav) => return self.with_load(state, uav, measured.specific_force),
-                    Err(fault) => fault,
-                },
+                Ok(()) => {
+                    let doubt = self.doubt(state, uav);
+                    if doubt != Some(Doubt::Load) {
+                        let of_load = doubt.and(uav).map(|uav| self.of_load(state, uav));
+                        return self.with_load(state, of_load.as_ref().or(uav), measured.specific_force);
+                    }
+                    Fault::Contradiction
+                }
             },
         };
         self.blind += self.sampler.period();
         if let Some(output) = self.carried(fault, uav, measured.specific_force) {
             return output;
         }
-        if let Some(output) = self.mended(fault, &measured) {
+        if let Some(output) = self.mended(fault, &measured, uav) {
             return output;
         }
         if self.fault != Some(Fault::Caught) {

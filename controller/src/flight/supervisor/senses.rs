@@ -1,52 +1,104 @@
 //! What is measured: what of it is believed, and what is flown on where a part is missing.
 
 use model::{Channel, Command, Real, State, Uav};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::Supervisor;
 use crate::flight::cable::Watching;
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output};
+use crate::flight::motion::{Off, Standing};
 use crate::flight::turning::{LED, angle, mend};
 use crate::law::Law;
 use crate::sampled::actuator::Actuation;
 
+/// What is not to be believed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Doubt {
+    /// The UAV: load and rod tell where it is.
+    Uav,
+    /// The load, or where it hangs.
+    Load,
+}
+
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
-    /// The UAV's own navigation, unless the load's is to be believed rather. Where both have jumped
-    /// what they are measured from has moved.
-    ///
-    /// # Errors
-    /// The load is measured in flight where it can't hang from the UAV, or does not move as its
-    /// velocity says.
+    /// Takes in the UAV, and carries on what of its position or velocity stands still though the other
+    /// does not.
     #[inline]
-    pub(super) fn believe<'a>(
-        &mut self,
-        state: &State<T>,
-        uav: Option<&'a Uav<T>>,
-    ) -> Result<Option<&'a Uav<T>>, Fault> {
-        let Some(uav) = uav else { return Ok(None) };
-        let [load_is_off, uav_is_off] = self.is_off(state, uav);
-        if load_is_off { Err(Fault::Contradiction) } else { Ok(Some(uav).filter(|_| !uav_is_off)) }
+    pub(super) fn see_uav(&mut self, uav: &Uav<T>, specific: Option<&Vector3<T>>) -> Option<Uav<T>> {
+        self.motion.see_uav(uav);
+        self.motion.standing().map(|standing| self.carry_on(uav, standing, specific))
     }
 
-    /// Whether load and UAV are measured where they can't be.
+    #[cold]
     #[inline(never)]
-    fn is_off(&mut self, state: &State<T>, uav: &Uav<T>) -> [bool; 2] {
+    fn carry_on(&self, uav: &Uav<T>, standing: Standing, specific: Option<&Vector3<T>>) -> Uav<T> {
+        match standing {
+            Standing::Position => Uav { position: uav.position + self.motion.led(), ..*uav },
+            Standing::Velocity => Uav { velocity: self.carried_velocity(&uav.attitude, specific), ..*uav },
+        }
+    }
+
+    /// The UAV's velocity by the forces on it, m/s.
+    fn carried_velocity(&self, attitude: &Matrix3<T>, specific: Option<&Vector3<T>>) -> Vector3<T> {
+        let thrust = self.sampler.applied().thrust;
+        self.cable.carried(self.sampler.vehicle(), attitude, thrust, specific)
+    }
+
+    /// Where the UAV has come to since its navigation was lost, if a slack cable does not tell.
+    #[cold]
+    #[inline(never)]
+    fn lost_uav(&mut self, state: &State<T>, specific: Option<&Vector3<T>>) -> Option<Uav<T>> {
+        let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault);
+        if !is_flying || self.is_hung() || self.landing.is_by_rod() {
+            return None;
+        }
+        let State { attitude, body_rate, .. } = *state;
+        let velocity = self.carried_velocity(&attitude, specific);
+        let position = self.motion.carry(&velocity);
+        Some(Uav { position, velocity, attitude, body_rate })
+    }
+
+    /// What of load and UAV is not to be believed in flight: a load where it can't hang from the UAV, or
+    /// what does not move as its velocity says. Where both have jumped, what they are measured from
+    /// has moved.
+    #[inline]
+    pub(super) fn doubt(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Option<Doubt> {
+        let uav = uav?;
+        self.motion.see_load(state);
+        let off = self.motion.off();
         if matches!(self.mode, Mode::Off | Mode::Idle) {
-            return [false; 2];
+            None
+        } else if off.uav && !off.load && !off.rod && self.is_hung() {
+            Some(Doubt::Uav)
+        } else {
+            self.is_contradicted(&off, state, uav).then_some(Doubt::Load)
         }
-        let [load_is_off, uav_is_off] = self.motion.is_off(state, uav);
-        if uav_is_off && !load_is_off && self.is_hung() {
-            return [false, true];
+    }
+
+    /// The UAV by load and rod, where its own navigation is wrong; but for the velocity if it is the
+    /// position that stands still, since that is true of a slack cable, too.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn of_load(&self, state: &State<T>, uav: &Uav<T>) -> Uav<T> {
+        let of_load = Uav::of(state, self.sampler.vehicle());
+        match self.motion.standing() {
+            Some(Standing::Position) => Uav { velocity: uav.velocity, ..of_load },
+            _ => of_load,
         }
+    }
+
+    /// Whether the load is measured where it can't be.
+    #[inline(never)]
+    fn is_contradicted(&mut self, off: &Off, state: &State<T>, uav: &Uav<T>) -> bool {
         let line = state.position - uav.position;
         // A take-off does not fly by the load, which an estimate may only just have found.
-        let is_alone_off = load_is_off && !uav_is_off && self.mode != Mode::TakeOff;
+        let is_alone_off = (off.load || off.rod) && !off.uav && self.mode != Mode::TakeOff;
         let is_off = is_alone_off || self.cable.is_contradicted(self.sampler.vehicle(), &line, &state.rod);
         if is_off {
             // Nor was the last state one to carry on.
             self.blind = self.blind.max(self.policy.coast);
         }
-        [is_off, false]
+        is_off
     }
 
     /// Whether a rate stands still while what it is of turns.
@@ -116,18 +168,40 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         Some(Output { fault: output.fault.or(Some(fault)), ..output })
     }
 
-    /// A step on a state of which attitude or body rate is missing for longer, from the other of
-    /// them and the last step's. It is good enough for hold.
+    /// A step on a state of which a part is missing or wrong and found from the rest. It is good
+    /// enough for hold.
     #[cold]
     #[inline(never)]
-    pub(super) fn mended(&mut self, fault: Fault, measured: &Measured<'_, T>) -> Option<Output<T>> {
-        let Fault::State(channel @ (Channel::Attitude | Channel::BodyRate)) = fault else { return None };
+    pub(super) fn mended(
+        &mut self,
+        fault: Fault,
+        measured: &Measured<'_, T>,
+        uav: Option<&Uav<T>>,
+    ) -> Option<Output<T>> {
         let mut state = *measured.state?;
-        if !self.mend(&mut state, channel) {
-            return None;
+        let mut uav = uav.copied();
+        match fault {
+            // From the other of the two, and the last step's.
+            Fault::State(channel @ (Channel::Attitude | Channel::BodyRate)) => {
+                if !self.mend(&mut state, channel) {
+                    return None;
+                }
+                let State { attitude, body_rate, .. } = state;
+                uav = measured.uav.map(|uav| Uav { attitude, body_rate, ..*uav }).filter(|uav| uav.check().is_ok());
+                match self.doubt(&state, uav.as_ref()) {
+                    None => {}
+                    Some(Doubt::Uav) => uav = uav.map(|uav| self.of_load(&state, &uav)),
+                    Some(Doubt::Load) => return None,
+                }
+            }
+            Fault::Contradiction if self.is_hung() => {
+                let length = self.sampler.vehicle().params().rod_length;
+                state = self.motion.mended(&state, uav.as_ref()?, length).filter(|state| state.check().is_ok())?;
+                self.fault = Some(fault);
+            }
+            _ => return None,
         }
-        let uav = measured.uav.map(|uav| Uav { attitude: state.attitude, body_rate: state.body_rate, ..*uav });
-        let uav = self.believe(&state, uav.as_ref().filter(|uav| uav.check().is_ok())).ok()?;
+        let uav = uav.as_ref();
         if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.enter_hold(&self.now(&state, uav), Some(fault));
         }
@@ -136,6 +210,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let now = self.now(&state, uav);
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &now.velocity, &now.attitude, thrust, measured.specific_force);
+        self.cable.watch(self.sampler.vehicle(), None, self.watching());
         self.change_mode(Some(&state), uav);
         let known = self.sampler.freeze(&state);
         self.sampler.sample(&state);
@@ -171,6 +246,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         specific: Option<Vector3<T>>,
     ) -> Output<T> {
         let length = self.sampler.vehicle().params().rod_length;
+        let is_lost = uav.is_none() && self.motion.has_uav();
+        let lost = if is_lost { self.lost_uav(state, specific.as_ref()) } else { None };
+        let uav = uav.or(lost.as_ref());
         let velocity = match uav {
             Some(uav) => uav.velocity,
             None => state.velocity - state.rod_rate * length,
