@@ -51,13 +51,16 @@ impl Sender {
     }
 }
 
+/// Batteries that are told apart; the last stands for all further ones.
+const BATTERIES: usize = 4;
+
 /// Who was heard when.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Failsafe {
     station: Sender,
     stick: Sender,
-    /// What is left, %.
-    battery: Option<i8>,
+    /// What is left in each battery, %.
+    batteries: [Option<i8>; BATTERIES],
     /// What was lost at the last step.
     lost: [bool; 3],
 }
@@ -82,14 +85,17 @@ impl Failsafe {
         self.stick.silent_s = Some(0.0);
     }
 
-    /// The battery has so much left, %.
-    pub fn hear_battery(&mut self, percent: i8) {
-        self.battery = Some(percent);
+    /// The battery of this number has so much left, %.
+    pub fn hear_battery(&mut self, number: u8, percent: i8) {
+        let index = usize::from(number).min(BATTERIES - 1);
+        if let Some(battery) = self.batteries.get_mut(index) {
+            *battery = Some(percent);
+        }
     }
 
-    /// What the battery has left, %, if that is known.
+    /// What the emptiest battery has left, %, if that is known.
     pub fn battery(&self) -> Option<i8> {
-        self.battery
+        self.batteries.into_iter().flatten().min()
     }
 
     /// Whether it is lost now.
@@ -98,7 +104,7 @@ impl Failsafe {
             Loss::Station => self.station.is_lost(settings.get(Setting::STATION_TIMEOUT)),
             Loss::Stick => self.stick.is_lost(settings.get(Setting::STICK_TIMEOUT)),
             Loss::Battery => {
-                self.battery.is_some_and(|percent| f32::from(percent) < settings.get(Setting::BATTERY_LEAST))
+                self.battery().is_some_and(|percent| f32::from(percent) < settings.get(Setting::BATTERY_LEAST))
             }
         }
     }

@@ -1,6 +1,6 @@
 //! When the law is stepped, on which state, and what is counted and reported.
 
-use autopilot::{Autopilot, Boot, Server, Setting, Settings};
+use autopilot::{Autopilot, Boot, NotKept, Server, Setting, Settings};
 use controller::{Mode, Request};
 use link::MavMessage;
 use link::dialect::*;
@@ -221,14 +221,20 @@ fn an_overrun_is_counted_and_reported_once() {
 
 #[test]
 fn a_watchdog_reset_is_said_at_once_and_in_every_answer() {
-    let boot = Boot { by_watchdog: true, watchdog_resets: 3, internal_clock: true, core_hz: 16_000_000 };
+    let boot = Boot {
+        by_watchdog: true,
+        watchdog_resets: 3,
+        internal_clock: true,
+        forgotten: Some(NotKept::Flash),
+        core_hz: 16_000_000,
+    };
     let mut autopilot = Autopilot::new(boot);
     let mut said = Vec::new();
     Server::new().greet(&autopilot, &mut |message| said.push(message));
     let texts = said.iter().filter(|message| matches!(message, MavMessage::STATUSTEXT(_))).count();
     assert!(matches!(said[0], MavMessage::HEARTBEAT(_)));
-    // And that the link is not signed.
-    assert_eq!(texts, 3);
+    // And that the flash failed, and that the link is not signed.
+    assert_eq!(texts, 4);
     let faults = autopilot.tick().command.faults;
     assert!(faults.contains(LoadFault::LOAD_FAULT_WATCHDOG | LoadFault::LOAD_FAULT_INTERNAL_CLOCK));
     assert_eq!(autopilot.counters_message().watchdog_resets, 3);

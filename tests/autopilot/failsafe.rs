@@ -2,7 +2,7 @@
 //! for ever.
 
 use autopilot::{Autopilot, Setting};
-use controller::Mode;
+use controller::{Mode, Request};
 use link::MavMessage;
 use link::dialect::*;
 
@@ -32,7 +32,11 @@ fn radio(chan5_raw: u16, chan6_raw: u16) -> MavMessage {
 }
 
 fn battery(battery_remaining: i8) -> MavMessage {
-    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA { battery_remaining, ..BATTERY_STATUS_DATA::DEFAULT })
+    pack(0, battery_remaining)
+}
+
+fn pack(id: u8, battery_remaining: i8) -> MavMessage {
+    MavMessage::BATTERY_STATUS(BATTERY_STATUS_DATA { id, battery_remaining, ..BATTERY_STATUS_DATA::DEFAULT })
 }
 
 /// In flight, on its way to the path.
@@ -143,6 +147,85 @@ fn a_low_battery_lands_once_and_keeps_it_down() {
         (result, said),
         (MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8, vec!["not armed: battery below FS_BAT_PCT".into()])
     );
+}
+
+/// The other pack's report does not end the loss, so that the next of the first is no new one.
+#[test]
+fn the_emptiest_battery_counts() {
+    let mut flying = Flying::with(&[]);
+    for (id, percent) in [(0, 60), (1, 14)] {
+        flying.station.say(&pack(id, percent));
+    }
+    flying.fly(0.01);
+    assert_eq!(flying.mode(), Mode::Land);
+    flying.station.ask(LoadMode::LOAD_MODE_HOLD);
+    for _ in 0..5 {
+        for (id, percent) in [(0, 60), (1, 14)] {
+            flying.station.say(&pack(id, percent));
+            assert!(flying.fly(0.01).contains(LoadFault::LOAD_FAULT_BATTERY));
+        }
+    }
+    assert_eq!(flying.mode(), Mode::Hold);
+}
+
+/// A mode switch says some mode before arming too, and is not obeyed until it is turned.
+#[test]
+fn a_mode_switch_before_arming_asks_for_nothing() {
+    for place in [1100, 1500, 1900] {
+        let mut autopilot = driven(0.0);
+        configure(&mut autopilot, Setting::MODE_CHANNEL, 5.0);
+        let mut station = Station::new(autopilot);
+        station.say(&radio(place, 1000));
+        arm(&mut station.autopilot);
+        station.say(&radio(place, 1000));
+        for sequence in 1..100 {
+            fly(&mut station.autopilot, sequence);
+            assert_eq!(station.autopilot.mode(), Mode::Idle, "{place}");
+        }
+        let (turned, mode) = if place == 1500 { (1900, Request::Follow) } else { (1500, Request::Hold) };
+        station.say(&radio(turned, 1000));
+        assert_eq!(station.autopilot.requested(), mode);
+    }
+}
+
+/// What gives a channel back to the radio, or says that it has no value, turns no switch.
+#[test]
+fn only_a_pulse_turns_a_switch() {
+    let mut flying = Flying::with(&[(Setting::MODE_CHANNEL, 5.0), (Setting::KILL_CHANNEL, 6.0)]);
+    flying.station.say(&radio(1900, 1000));
+    for none in [0, 1, 799, 2201, 65534, 65535] {
+        flying.station.say(&radio(none, none));
+        flying.fly(0.01);
+        assert!(flying.station.autopilot.is_armed(), "{none}");
+        assert_eq!(flying.mode(), Mode::Join, "{none}");
+    }
+    flying.station.say(&radio(1900, 1800));
+    assert!(!flying.station.autopilot.is_armed());
+    // Nor does it turn a kill switch back.
+    flying.station.say(&radio(1900, 0));
+    let (_, said) = flying.station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    assert_eq!(said, ["not armed: the kill switch is on"]);
+}
+
+/// Each of two senders has its own switches.
+#[test]
+fn a_joystick_does_not_turn_the_radio_s_switches() {
+    let channels = [(Setting::MODE_CHANNEL, 5.0), (Setting::KILL_CHANNEL, 6.0)];
+    let mut flying = Flying::with(&channels);
+    flying.station.say(&radio(1500, 1000));
+    flying.fly(0.01);
+    assert_eq!(flying.mode(), Mode::Hold);
+    flying.station.ask(LoadMode::LOAD_MODE_LAND);
+    for _ in 0..5 {
+        flying.station.say(&joystick(0));
+        flying.station.say(&radio(1500, 1000));
+        flying.fly(0.01);
+        assert_eq!(flying.mode(), Mode::Land);
+    }
+    flying.station.say(&radio(1500, 1800));
+    flying.station.say(&joystick(0));
+    let (_, said) = flying.station.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0);
+    assert_eq!(said, ["not armed: the kill switch is on"]);
 }
 
 #[test]

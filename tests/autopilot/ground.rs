@@ -16,9 +16,11 @@ fn uav_of(state: &State<f32>) -> Uav<f32> {
     Uav::of(state, &Vehicle::new(VehicleParams::paper()).unwrap())
 }
 
-/// The `sequence`-th frame, with the UAV, and with the load if it is seen.
+/// The `sequence`-th frame, with the UAV, and with the load if it is seen; no two in a row are the
+/// same.
 fn with_uav(sequence: u32, sees_load: bool) -> LOAD_STATE_DATA {
-    let (state, uav) = (start(), uav_of(&start()));
+    let (state, mut uav) = (start(), uav_of(&start()));
+    uav.velocity.x += 1e-6 * (sequence % 7) as f32;
     let measured = Measured { state: sees_load.then_some(&state), uav: Some(&uav), specific_force: None };
     LOAD_STATE_DATA { time_usec: 2_000 * u64::from(sequence) + 1, sequence, ..link::measured_frame(&measured) }
 }

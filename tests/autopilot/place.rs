@@ -6,7 +6,7 @@ use hil_sim::world::random::{Purpose, Stream};
 use link::MavMessage;
 use link::dialect::*;
 
-use crate::station::{Station, armed, fly, frame_of};
+use crate::station::{Station, armed, driven, fly, frame_of, texts};
 
 const HOME: SET_GPS_GLOBAL_ORIGIN_DATA = SET_GPS_GLOBAL_ORIGIN_DATA {
     latitude: 535_270_000,
@@ -166,6 +166,40 @@ fn a_station_is_told_what_the_receiver_says_twice_a_second() {
     receiver(&mut station);
     let silent = receiver(&mut station);
     assert_eq!((silent.fix_type, silent.satellites_visible), (1, u8::MAX));
+}
+
+/// A radio that several vehicles share: what others sense, and what a router brings back of this
+/// one's, is nothing to fly by.
+#[test]
+fn only_its_own_sensors_are_flown_by() {
+    let place =
+        MavMessage::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA { z: -3.0, ..LOCAL_POSITION_NED_DATA::DEFAULT });
+    let turned =
+        MavMessage::ATTITUDE_QUATERNION(ATTITUDE_QUATERNION_DATA { q1: 1.0, ..ATTITUDE_QUATERNION_DATA::DEFAULT });
+    for (sender, is_flown_by) in [
+        ((1, 1), false),
+        ((2, 1), false),
+        ((189, 1), false),
+        ((1, 2), true),
+        ((1, 191), true),
+        (link::STATION, true),
+        ((245, 190), true),
+    ] {
+        let mut station = Station::new(driven(0.0));
+        let mut encoder = link::Encoder::new(sender);
+        let mut said = Vec::new();
+        for message in [&place, &turned, &place] {
+            let bytes = encoder.frame(message).bytes().to_vec();
+            said.extend(texts(&station.hear(&bytes).0));
+        }
+        station.autopilot.tick();
+        let is_placed = station.messages().iter().any(|news| matches!(news, MavMessage::LOCAL_POSITION_NED(_)));
+        assert_eq!(is_placed, is_flown_by, "{sender:?}");
+        let (system, _) = sender;
+        let warning = format!("sensors of system {system} not used: not this one's");
+        let expected = if is_flown_by || system == 1 { vec![] } else { vec![warning] };
+        assert_eq!(said, expected, "said once");
+    }
 }
 
 #[test]

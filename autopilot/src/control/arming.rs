@@ -91,7 +91,7 @@ impl Autopilot {
             if self.drive() == Drive::Flight && apart_s > most {
                 return Err(ArmRefused::Slow(apart_s, most));
             }
-            let stands = self.request == Request::Idle;
+            let stands = self.request == Request::Idle || self.stands;
             if let Some(estimator) = &mut self.estimator {
                 estimator.restart(&self.settings, stands).map_err(|error| ArmRefused::Setup(error.into()))?;
             }
@@ -105,7 +105,7 @@ impl Autopilot {
             self.underway = Underway::default();
             self.inbox = None;
             self.epoch = Epoch::default();
-            self.newest = None;
+            (self.newest, self.newest_uav) = (None, None);
             self.blind_s = 0.0;
             self.last = None;
             self.until_telemetry = 0;

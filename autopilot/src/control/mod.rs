@@ -64,6 +64,7 @@ pub struct Autopilot {
     epoch: Epoch,
     /// The last state that has come, and what was wrong with those since the last control period.
     newest: Option<State<f32>>,
+    newest_uav: Option<Uav<f32>>,
     refused: Option<Absence>,
     /// What the last control period lacked.
     absence: Option<Absence>,
@@ -116,6 +117,7 @@ impl Autopilot {
             stands: false,
             epoch: Epoch::default(),
             newest: None,
+            newest_uav: None,
             refused: None,
             absence: None,
             fault: None,
@@ -271,8 +273,8 @@ impl Autopilot {
     }
 
     /// The battery has so much left, %.
-    pub fn hear_battery(&mut self, percent: i8) {
-        self.failsafe.hear_battery(percent);
+    pub fn hear_battery(&mut self, number: u8, percent: i8) {
+        self.failsafe.hear_battery(number, percent);
     }
 
     /// What the battery has left, %, if that is known.

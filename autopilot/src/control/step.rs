@@ -12,12 +12,15 @@ use crate::report;
 use crate::seen::Seen;
 use crate::settings::Setting;
 
+/// A load nearer to its UAV than this share of the cable does not hang from it.
+const SLACK: f32 = 0.9;
+
 impl Autopilot {
     /// A state for the coming control period: flight and real time. One from another time than the
     /// last, earlier or seconds later, is refused; but for the third in a row that agree on
     /// another, which is that of a clock that has restarted. Of a real vehicle in flight so is one
-    /// that is the last again: an estimator that has stopped. A simulated one can be at rest to the
-    /// bit.
+    /// that is the last again, the load's or the UAV's: an estimator that has stopped. A simulated
+    /// one can be at rest to the bit.
     pub fn receive(&mut self, frame: &LOAD_STATE_DATA) {
         if !self.epoch.accept(frame.time_usec) {
             self.counters.refused = self.counters.refused.wrapping_add(1);
@@ -25,11 +28,19 @@ impl Autopilot {
             return;
         }
         let mut frame = frame.clone();
-        let state = Seen::of(&frame).state;
+        let Seen { state, uav, .. } = Seen::of(&frame);
+        let may_freeze = self.drive() == Drive::Flight && self.is_flying();
+        if uav.is_some() {
+            let is_again = self.newest_uav == uav;
+            self.newest_uav = uav;
+            if is_again && may_freeze {
+                frame.seen.remove(LoadSeen::LOAD_SEEN_UAV);
+            }
+        }
         if state.is_some() {
-            let is_again = self.newest == state && self.drive() == Drive::Flight && self.is_flying();
+            let is_again = self.newest == state;
             self.newest = state;
-            if is_again {
+            if is_again && may_freeze {
                 frame.seen |= LoadSeen::LOAD_SEEN_NO_LOAD;
                 self.counters.refused = self.counters.refused.wrapping_add(1);
                 self.refused = Some(Absence::Frozen);
@@ -143,7 +154,14 @@ impl Autopilot {
             if action == LoadAction::LOAD_ACTION_START {
                 self.request = Request::Follow;
             }
-            begin(rig, action, zeta, state, self.request);
+            let length = rig.vehicle().params().rod_length;
+            let is_slack = seen.uav().is_some_and(|uav| {
+                let line = state.position - uav.position;
+                line.dot(&line) < (SLACK * length) * (SLACK * length)
+            });
+            // What stands is not taken over in flight, whatever was asked for.
+            let request = if self.stands || is_slack { Request::Idle } else { self.request };
+            begin(rig, action, zeta, state, request);
         }
         let integral = rig.integral();
         let before = rig.mode();

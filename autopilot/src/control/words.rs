@@ -4,6 +4,7 @@ use link::dialect::{LOAD_COMMAND_DATA, LOAD_TELEMETRY_DATA};
 
 use crate::estimate::Unseen;
 use crate::failsafe::Loss;
+use crate::store::NotKept;
 
 /// What drives the control step, and whether the rotors do as they are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub struct Boot {
     pub watchdog_resets: u32,
     /// The crystal did not start.
     pub internal_clock: bool,
+    /// Why parameters, mission and fence are not as they were before, if they are not.
+    pub forgotten: Option<NotKept>,
     /// Core clock, Hz.
     pub core_hz: u32,
 }

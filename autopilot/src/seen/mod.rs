@@ -17,7 +17,8 @@ pub struct Seen {
     pub state: Option<State<f32>>,
     /// A state has come that is none.
     pub is_bad: bool,
-    uav: Option<Uav<f32>>,
+    /// The UAV's own navigation, if it is told.
+    pub uav: Option<Uav<f32>>,
     specific_force: Option<Vector3<f32>>,
 }
 

@@ -27,6 +27,9 @@ use stick::Switches;
 /// What a ground station says that it is.
 const STATION: u8 = MavType::MAV_TYPE_GCS as u8;
 
+/// Ground stations and their tools number themselves from here on, vehicles below.
+const STATIONS: u8 = 190;
+
 /// What the caller has to do after a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Next {
@@ -53,8 +56,11 @@ pub struct Server {
     listing: Option<usize>,
     /// The next mode likewise.
     modes: Option<usize>,
-    /// What the pilot's switches said last.
-    switches: Switches,
+    /// What the pilot's switches said last, on the stick and on the radio.
+    stick: Switches,
+    radio: Switches,
+    /// The last other vehicle's system whose sensors were not taken for this one's.
+    stranger: Option<u8>,
     files: Files,
     transfer: Transfer,
     place: Place,
@@ -71,14 +77,15 @@ impl Server {
     /// Nothing received, nothing reported.
     #[must_use]
     pub const fn new() -> Self {
-        let switches = Switches { mode: None, kill: false };
         Self {
             bad_frames: 0,
             reported: (Mode::Off, None, None),
             noticed: 0,
             listing: None,
             modes: None,
-            switches,
+            stick: Switches::new(),
+            radio: Switches::new(),
+            stranger: None,
             files: Files::new(),
             transfer: Transfer::new(),
             place: Place::new(),
@@ -96,6 +103,14 @@ impl Server {
         }
         if boot.internal_clock {
             send(warning("no crystal: on the internal oscillator"));
+        }
+        match boot.forgotten {
+            None => {}
+            Some(NotKept::NoMemory) => send(warning("this board keeps no parameters: all are defaults")),
+            Some(NotKept::Full | NotKept::Flash) => send(status(
+                MavSeverity::MAV_SEVERITY_CRITICAL,
+                "flash failed: no mission, fence; default parameters",
+            )),
         }
         // MAVLink 2's signing is not supported.
         send(status(MavSeverity::MAV_SEVERITY_INFO, "link not signed: whoever is on it may command"));
@@ -235,15 +250,29 @@ impl Server {
         MavMessage::EXTENDED_SYS_STATE(EXTENDED_SYS_STATE_DATA { vtol_state: 0, landed_state })
     }
 
-    /// Does what the pilot's switches have been turned to.
-    fn switch(&mut self, switches: Switches, autopilot: &mut Autopilot) {
-        autopilot.hear_stick(switches.kill);
-        if switches.mode != self.switches.mode
-            && let Some(mode) = switches.mode
+    /// Does what the pilot's switches have been turned to since `before`. On the ground they ask for
+    /// nothing: a switch always says some mode, and asked for before arming that is taken over in
+    /// flight.
+    fn switch(&self, before: Switches, now: Switches, autopilot: &mut Autopilot) {
+        autopilot.hear_stick(self.stick.kill || self.radio.kill);
+        if now.mode != before.mode
+            && let Some(mode) = now.mode
+            && autopilot.is_armed()
         {
             autopilot.request(mode);
         }
-        self.switches = switches;
+    }
+
+    /// Whether what `sender` senses is of this vehicle: not its own word, which a router may bring
+    /// back, nor another vehicle's on the same link.
+    fn is_aboard(&mut self, sender: Address, send: &mut impl FnMut(MavMessage)) -> bool {
+        let (system, _) = sender;
+        let is_stranger = system != link::CONTROLLER.0 && system < STATIONS;
+        if is_stranger && self.stranger != Some(system) {
+            self.stranger = Some(system);
+            send(warning(format_args!("sensors of system {system} not used: not this one's")));
+        }
+        !is_stranger && sender != link::CONTROLLER
     }
 
     /// Acts on what the decoder found.
@@ -281,6 +310,7 @@ impl Server {
             MavMessage::FILE_TRANSFER_PROTOCOL(request) => {
                 self.files.answer(&request, sender).into_iter().for_each(send);
             }
+            message if is_sensed(&message) && !self.is_aboard(sender, send) => {}
             MavMessage::LOCAL_POSITION_NED(place) => autopilot.navigation_mut().hear_place(&place),
             MavMessage::ATTITUDE_QUATERNION(attitude) => autopilot.navigation_mut().hear_attitude(&attitude),
             MavMessage::ODOMETRY(odometry) => autopilot.navigation_mut().hear_odometry(&odometry),
@@ -289,22 +319,23 @@ impl Server {
                 self.receiver.hear_input(&fix, time_ns);
                 autopilot.navigation_mut().instruments_mut().hear_gps_input(&fix);
             }
-            // Its own word, which a router may bring back, is no receiver's.
-            MavMessage::GPS_RAW_INT(fix) if sender != link::CONTROLLER => {
+            MavMessage::GPS_RAW_INT(fix) => {
                 self.receiver.hear_raw(&fix, time_ns);
                 autopilot.navigation_mut().instruments_mut().hear_gps_raw(&fix);
             }
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
             MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
-                autopilot.hear_battery(battery.battery_remaining);
+                autopilot.hear_battery(battery.id, battery.battery_remaining);
             }
             MavMessage::MANUAL_CONTROL(message) => {
-                let switches = stick::joystick(&message, autopilot.settings());
-                self.switch(switches, autopilot);
+                let now = stick::joystick(&message, autopilot.settings());
+                let before = core::mem::replace(&mut self.stick, now);
+                self.switch(before, now, autopilot);
             }
             MavMessage::RC_CHANNELS_OVERRIDE(message) => {
-                let switches = stick::radio(&message, autopilot.settings());
-                self.switch(switches, autopilot);
+                let before = self.radio;
+                self.radio = stick::radio(&message, autopilot.settings(), before);
+                self.switch(before, self.radio, autopilot);
             }
             MavMessage::TIMESYNC(request) if request.tc1 == 0 => {
                 send(MavMessage::TIMESYNC(TIMESYNC_DATA {
@@ -317,6 +348,20 @@ impl Server {
         }
         Next::Nothing
     }
+}
+
+/// Whether a message says what sensors of some vehicle have sensed.
+fn is_sensed(message: &MavMessage) -> bool {
+    matches!(
+        message,
+        MavMessage::LOCAL_POSITION_NED(_)
+            | MavMessage::ATTITUDE_QUATERNION(_)
+            | MavMessage::ODOMETRY(_)
+            | MavMessage::HIGHRES_IMU(_)
+            | MavMessage::GPS_INPUT(_)
+            | MavMessage::GPS_RAW_INT(_)
+            | MavMessage::BATTERY_STATUS(_)
+    )
 }
 
 /// Whether a message that names whom it is for is for this program, or for all.

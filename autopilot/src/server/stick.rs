@@ -8,9 +8,11 @@ use crate::settings::{Setting, Settings};
 /// Above it a switch is on, and a mode switch at its upper end; below [`LOW`] at its lower end. µs.
 const HIGH: u16 = 1700;
 const LOW: u16 = 1300;
+/// Pulses of a receiver, µs. All else says that the channel has no value, or is given back.
+const PULSES: core::ops::RangeInclusive<u16> = 800..=2200;
 
-/// What the pilot's switches say.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+/// What the switches of a stick or radio say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Switches {
     /// The mode that is asked for.
     pub mode: Option<Request>,
@@ -18,8 +20,15 @@ pub struct Switches {
     pub kill: bool,
 }
 
-/// The switches on a radio's channels.
-pub fn radio(message: &RC_CHANNELS_OVERRIDE_DATA, settings: &Settings) -> Switches {
+impl Switches {
+    /// Nothing.
+    pub const fn new() -> Self {
+        Self { mode: None, kill: false }
+    }
+}
+
+/// The switches on a radio's channels; one without a value is as it was `before`.
+pub fn radio(message: &RC_CHANNELS_OVERRIDE_DATA, settings: &Settings, before: Switches) -> Switches {
     let m = message;
     let channels = [
         m.chan1_raw,
@@ -43,15 +52,17 @@ pub fn radio(message: &RC_CHANNELS_OVERRIDE_DATA, settings: &Settings) -> Switch
     ];
     let value = |setting| {
         let channel = (settings.get(setting) as usize).checked_sub(1)?;
-        channels.get(channel).copied().filter(|&value| value != 0 && value != u16::MAX)
+        channels.get(channel).copied().filter(|value| PULSES.contains(value))
     };
     Switches {
-        mode: value(Setting::MODE_CHANNEL).map(|value| match value {
-            ..LOW => Request::Land,
-            LOW..=HIGH => Request::Hold,
-            _ => Request::Follow,
+        mode: value(Setting::MODE_CHANNEL).map_or(before.mode, |value| {
+            Some(match value {
+                ..LOW => Request::Land,
+                LOW..=HIGH => Request::Hold,
+                _ => Request::Follow,
+            })
         }),
-        kill: value(Setting::KILL_CHANNEL).is_some_and(|value| value > HIGH),
+        kill: value(Setting::KILL_CHANNEL).map_or(before.kill, |value| value > HIGH),
     }
 }
 

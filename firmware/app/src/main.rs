@@ -40,6 +40,8 @@ mod app {
 
     /// The timer's period in lockstep, s: half of the watchdog's.
     const LOCKSTEP_PERIOD_S: f32 = 0.25;
+    /// Time for the acknowledgement of a reset to go out, 60 bytes even at 57,600 baud.
+    const ACKNOWLEDGED_NS: u64 = 50_000_000;
 
     /// Set by each control interrupt, cleared by whoever feeds the watchdog.
     static CONTROL_LIVES: AtomicBool = AtomicBool::new(false);
@@ -60,7 +62,7 @@ mod app {
         timer: board::Timer,
         rotors: board::RotorOutputs,
         kill: board::KillPin,
-        store: Option<Store<board::Memory>>,
+        store: Result<Store<board::Memory>, NotKept>,
         serial: board::SerialPort,
         decoder: Decoder,
         led: board::StatusLed,
@@ -107,7 +109,8 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let Board { boot, mut timer, rotors, serial, led, kill, settings, store, watchdog } = board::start();
         clock::start(cx.core.SYST, boot.core_hz);
-        let Boot { core_hz, by_watchdog, internal_clock, watchdog_resets } = boot;
+        let boot = Boot { forgotten: store.as_ref().err().copied(), ..boot };
+        let Boot { core_hz, by_watchdog, internal_clock, watchdog_resets, .. } = boot;
         defmt::info!("{=u32} Hz, crystal: {=bool}", core_hz, !internal_clock);
         if by_watchdog {
             defmt::error!("reset by the watchdog, {=u32} times since power-on", watchdog_resets);
@@ -116,7 +119,7 @@ mod app {
         let server = Server::new();
         let mut outbox = Outbox { encoder: Encoder::new(link::CONTROLLER), bytes: Deque::new(), lost: 0 };
         server.greet(&autopilot, &mut |message| outbox.send(&message));
-        if let Some(Err(refusal)) = store.as_ref().map(|store| autopilot.recall(store)) {
+        if let Ok(Err(refusal)) = store.as_ref().map(|store| autopilot.recall(store)) {
             outbox.send(&Server::not_recalled(&refusal));
         }
         timer.set_period(autopilot.period_s());
@@ -184,9 +187,9 @@ mod app {
         });
     }
 
-    #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder, store])]
+    #[task(binds = USART1, priority = 2, shared = [autopilot, server, outbox, frame, answer], local = [serial, decoder, store, reset_ns: Option<u64> = None])]
     fn exchange(cx: exchange::Context) {
-        let exchange::LocalResources { serial, decoder, store, .. } = cx.local;
+        let exchange::LocalResources { serial, decoder, store, reset_ns, .. } = cx.local;
         let exchange::SharedResources { mut autopilot, mut server, mut outbox, mut frame, mut answer, .. } =
             cx.shared;
 
@@ -208,8 +211,8 @@ mod app {
                     }
                     Next::Store(index) => {
                         let kept = autopilot.lock(|autopilot| match store {
-                            Some(store) => store.keep(autopilot.settings(), index),
-                            None => Err(NotKept::NoMemory),
+                            Ok(store) => store.keep(autopilot.settings(), index),
+                            Err(why) => Err(*why),
                         });
                         if let Err(why) = kept {
                             let _ = replies.push(Server::not_kept(why));
@@ -217,7 +220,7 @@ mod app {
                     }
                     Next::StoreMission => {
                         let kept = autopilot.lock(|autopilot| {
-                            let store = store.as_mut().ok_or(NotKept::NoMemory)?;
+                            let store = store.as_mut().map_err(|why| *why)?;
                             let mut keep = |kind| store.keep_items(kind, autopilot.mission().items(kind));
                             keep(Kind::Mission).and(keep(Kind::Fence))
                         });
@@ -225,7 +228,8 @@ mod app {
                             let _ = replies.push(Server::not_kept(why));
                         }
                     }
-                    Next::Reboot => cortex_m::peripheral::SCB::sys_reset(),
+                    // Once its acknowledgement has gone out: a station that misses it asks again.
+                    Next::Reboot => *reset_ns = Some(clock::now_ns() + ACKNOWLEDGED_NS),
                 }
                 outbox.lock(|outbox| replies.iter().for_each(|reply| outbox.send(reply)));
             });
@@ -258,6 +262,10 @@ mod app {
             !outbox.bytes.is_empty()
         });
         serial.wake_when_free(waiting);
+        // A control period's tick pends this task again.
+        if reset_ns.is_some_and(|reset_ns| clock::now_ns() >= reset_ns) {
+            cortex_m::peripheral::SCB::sys_reset();
+        }
         if news.is_some() {
             board::pend_link();
         }

@@ -8,7 +8,7 @@
 //!   the traits below;
 //! - `start`, `stop_rotors` (in any state, interrupts off) and `reset`.
 
-use autopilot::{Boot, Settings, Store};
+use autopilot::{Boot, NotKept, Settings, Store};
 use embedded_hal::pwm::SetDutyCycle;
 
 #[cfg(feature = "mps2")]
@@ -42,7 +42,7 @@ pub struct Board {
     /// The parameters as they were kept, and what keeps them, where there is something.
     pub settings: Settings,
     /// The same.
-    pub store: Option<Store<Memory>>,
+    pub store: Result<Store<Memory>, NotKept>,
     /// The watchdog, running.
     pub watchdog: Dog,
 }
@@ -87,12 +87,12 @@ pub trait Kill {
     fn is_high(&self) -> bool;
 }
 
-/// The parameters in `memory`, and the memory to keep others in. Before the watchdog: it may erase,
-/// for seconds.
-#[cfg_attr(feature = "mps2", allow(dead_code))]
-pub fn recall(memory: Memory) -> (Settings, Option<Store<Memory>>) {
+/// The parameters in `memory`, the memory to keep others in, or why there is none. Before the
+/// watchdog: it may erase, for seconds.
+#[cfg_attr(not(feature = "stm32f405"), allow(dead_code))]
+pub fn recall(memory: Memory) -> (Settings, Result<Store<Memory>, NotKept>) {
     let mut settings = Settings::default();
-    let store = Store::open(memory, &mut settings).ok();
+    let store = Store::open(memory, &mut settings).map_err(NotKept::from);
     (settings, store)
 }
 
@@ -147,7 +147,7 @@ pub fn pend_control() {
 pub const PULSE_RATE_HZ: u32 = 400;
 
 /// A pulse of 1 ms (stop) to 2 ms (full).
-#[cfg_attr(feature = "mps2", allow(dead_code))]
+#[cfg_attr(not(feature = "stm32f405"), allow(dead_code))]
 pub fn set_pulse(output: &mut impl SetDutyCycle, command: f32) {
     const FULL: f32 = 0.002 * 400.0;
     const STOP: f32 = 0.001 * 400.0;

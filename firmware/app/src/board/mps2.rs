@@ -3,7 +3,7 @@
 //!
 //! There are no rotors, LED or watchdog. Register names are those of Arm's CMSDK (DDI 0479).
 
-use autopilot::{Boot, Settings};
+use autopilot::{Boot, NotKept, Settings};
 
 use super::{Board, ControlTimer, Kill, Led, NoMemory, Rotors, Serial, Watchdog};
 
@@ -212,7 +212,7 @@ pub fn start() -> Board {
         led: StatusLed(()),
         kill: KillPin(()),
         settings: Settings::default(),
-        store: None,
+        store: Err(NotKept::NoMemory),
         watchdog: Dog(()),
     }
 }

@@ -240,7 +240,13 @@ pub fn start() -> Board {
     }
 
     Board {
-        boot: Boot { by_watchdog, watchdog_resets, internal_clock, core_hz: rcc.clocks.sysclk().raw() },
+        boot: Boot {
+            by_watchdog,
+            watchdog_resets,
+            internal_clock,
+            core_hz: rcc.clocks.sysclk().raw(),
+            ..Boot::default()
+        },
         timer: Timer(timer),
         rotors,
         serial: SerialPort { tx, rx, ring, lost: 0 },

@@ -16,7 +16,7 @@ use core::convert::Infallible;
 use core::sync::atomic::{AtomicU32, Ordering};
 use core::time::Duration;
 
-use autopilot::{Boot, Settings};
+use autopilot::{Boot, NotKept, Settings};
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use stm32h7xx_hal::gpio::{Input, Output, Pin};
 use stm32h7xx_hal::hal::PwmPin;
@@ -214,14 +214,20 @@ pub fn start() -> Board {
     rx.listen();
 
     Board {
-        boot: Boot { by_watchdog, watchdog_resets, internal_clock: !crystal, core_hz: ccdr.clocks.c_ck().raw() },
+        boot: Boot {
+            by_watchdog,
+            watchdog_resets,
+            internal_clock: !crystal,
+            core_hz: ccdr.clocks.c_ck().raw(),
+            ..Boot::default()
+        },
         timer: Timer(timer),
         rotors,
         serial: SerialPort { tx, rx, lost: 0 },
         led: StatusLed(gpiob.pb0.into_push_pull_output()),
         kill: KillPin(gpioc.pc13.into_pull_down_input()),
         settings: Settings::default(),
-        store: None,
+        store: Err(NotKept::NoMemory),
         watchdog: Dog(watchdog),
     }
 }
