@@ -86,6 +86,30 @@ fn every_float_crosses_bit_by_bit() {
     assert_eq!((messages, rejected), (vec![message], 0));
 }
 
+/// A heartbeat that pymavlink 2.4.50 has signed, with the key of 32 times 42, link 0 and time 1; and
+/// a battery's report from a dialect that has added to it since.
+#[test]
+fn signed_frames_and_newer_ones_are_understood() {
+    let message = MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavlink_version: 3, ..HEARTBEAT_DATA::DEFAULT });
+    let mut bytes = vec![
+        0xFD, 0x09, 0x01, 0x00, 0x00, 0xFF, 0xBE, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
+        0x03, 0x61, 0x91, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x00, 0xF9, 0x0D, 0x76, 0x85, 0xA2, 0x4C,
+    ];
+    bytes.extend_from_slice(Encoder::new(link::STATION).frame(&state(1)).bytes());
+    assert_eq!(decode(&bytes), (vec![message, state(1)], 0));
+
+    let battery = BATTERY_STATUS_DATA { battery_remaining: 71, id: 1, ..BATTERY_STATUS_DATA::DEFAULT };
+    let message = MavMessage::BATTERY_STATUS(battery);
+    let known = Encoder::new(link::STATION).frame(&message).bytes().to_vec();
+    let mut frame = known[..known.len() - 2].to_vec();
+    frame.resize(10 + BATTERY_STATUS_DATA::ENCODED_LEN, 0);
+    frame.extend_from_slice(&[1, 2, 3]);
+    frame[1] = (frame.len() - 10) as u8;
+    let crc = mavlink_core::calculate_crc(&frame[1..], MavMessage::extra_crc(147));
+    frame.extend_from_slice(&crc.to_le_bytes());
+    assert_eq!(decode(&frame), (vec![message], 0));
+}
+
 #[test]
 fn a_wrong_length_keeps_nobody_waiting() {
     let mut encoder = Encoder::new(link::STATION);

@@ -5,17 +5,20 @@ use mavlink_core::{MAV_STX_V2, MavlinkVersion, Message, MessageData, calculate_c
 use crate::Address;
 use crate::dialect::*;
 
-/// Start marker, nine bytes of header, checksum.
+/// Start marker, nine bytes of header, checksum, and a signature, which is not looked at.
 const HEADER: usize = 10;
 const CHECKSUM: usize = 2;
-const LONGEST: usize = HEADER + u8::MAX as usize + CHECKSUM;
+const SIGNATURE: usize = 13;
+const LONGEST: usize = HEADER + u8::MAX as usize + CHECKSUM + SIGNATURE;
+/// The one flag of a header that is understood.
+const SIGNED: u8 = 1;
 
 /// Why a frame was not taken. The search goes on from the byte after its marker, so a frame inside
 /// is still found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejected {
-    /// The message is not in the dialect, or is longer than the dialect has it, or asks for a
-    /// feature unknown here.
+    /// The message is not in the dialect, or is one of the dialect's own and longer than it has it,
+    /// or asks for a feature unknown here.
     Header {
         /// The message's number.
         id: u32,
@@ -30,7 +33,8 @@ pub enum Rejected {
 
 /// Finds frames, in bounded memory: never more than one frame is kept.
 ///
-/// A wrong length can't make it wait longer than the longest form of the message it claims to be.
+/// A wrong length can't make it wait longer than the longest form of the message it claims to be,
+/// if that is one of the dialect's own; the standard ones may have been extended since.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     buffer: [u8; LONGEST],
@@ -80,20 +84,26 @@ impl Decoder {
             received.split_first_chunk::<HEADER>()?;
         let id = u32::from_le_bytes([id0, id1, id2, 0]);
         let payload = usize::from(payload);
-        let known = incompatible == 0 && longest_payload(id).is_some_and(|longest| (1..=longest).contains(&payload));
-        if !known {
+        let longest = longest_payload(id).filter(|&longest| {
+            let most = if id < OWN { usize::from(u8::MAX) } else { longest };
+            incompatible & !SIGNED == 0 && (1..=most).contains(&payload)
+        });
+        let Some(longest) = longest else {
             self.drop_first(1);
             return Some(Err(Rejected::Header { id }));
-        }
+        };
         let end = HEADER + payload;
-        let body = received.get(HEADER..end)?;
+        let whole = end + CHECKSUM + if incompatible == SIGNED { SIGNATURE } else { 0 };
+        let received = received.get(..whole)?;
+        // What has been added to a message since is behind what is known of it.
+        let body = received.get(HEADER..HEADER + payload.min(longest))?;
         let &[low, high] = received.get(end..end + CHECKSUM)? else { return None };
         let right =
             calculate_crc(received.get(1..end)?, MavMessage::extra_crc(id)) == u16::from_le_bytes([low, high]);
         let message = if right { MavMessage::parse(MavlinkVersion::V2, id, body).ok() } else { None };
         match message {
             Some(message) => {
-                self.drop_first(end + CHECKSUM);
+                self.drop_first(whole);
                 Some(Ok((message, (system, component))))
             }
             None => {
@@ -108,6 +118,9 @@ impl Decoder {
         self.length -= count;
     }
 }
+
+/// The number of the dialect's first own message.
+const OWN: u32 = LOAD_STATE_DATA::ID;
 
 /// The whole payload of each message, before trailing zeros are left out.
 fn longest_payload(id: u32) -> Option<usize> {
