@@ -40,7 +40,7 @@ pub enum MissionState {
     Complete,
 }
 
-/// Steps from one look at the fence to the next: its cost is as much as that of a step.
+/// The fence is checked every so many steps: a check costs about as much as a step.
 const FENCE_EVERY: u8 = 9;
 
 const NO_ROUTE: &str = "no route is flown";

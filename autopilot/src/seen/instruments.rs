@@ -22,7 +22,7 @@ const THREE_DIMENSIONS: u8 = 3;
 const UNSTATED_M: [f32; 2] = [1.0, 1.6];
 const UNSTATED_M_S: [f32; 2] = [0.1, 0.16];
 /// Field and height are passed on no sooner than so long after the last, s: some parts of their
-/// errors hardly change, so more of them say no more.
+/// errors hardly change from one reading to the next, so that more readings would add nothing.
 const APART_S: f32 = 0.04;
 /// 10⁻⁷ degrees, rad.
 const UNIT: f32 = 1.745_329_3e-9;

@@ -13,7 +13,7 @@ pub fn describe(fault: Fault) -> String {
         Fault::NoPath => "no path".to_owned(),
         Fault::Slack => "cable slack, or shorter than told".to_owned(),
         Fault::PayloadLost => "payload lost".to_owned(),
-        Fault::Contradiction => "load's measurements contradict each other".to_owned(),
+        Fault::Contradiction => "load, rod and UAV disagree".to_owned(),
         Fault::Caught => "hanging from its cable, load caught".to_owned(),
         other => format!("{other:?}").to_lowercase(),
     }
