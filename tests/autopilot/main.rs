@@ -5,6 +5,7 @@ mod bytes;
 mod control;
 mod estimate;
 mod failsafe;
+mod fence;
 mod ground;
 mod link;
 mod mission;

@@ -12,15 +12,15 @@ use witness::plant::VehicleParameters;
 
 use crate::station::{Station, frame_of, set, texts};
 
-const ACCEPTED: u8 = MavResult::MAV_RESULT_ACCEPTED as u8;
-const NOT_NOW: u8 = MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8;
-const KEPT: MavMissionResult = MavMissionResult::MAV_MISSION_ACCEPTED;
+pub const ACCEPTED: u8 = MavResult::MAV_RESULT_ACCEPTED as u8;
+pub const NOT_NOW: u8 = MavResult::MAV_RESULT_TEMPORARILY_REJECTED as u8;
+pub const KEPT: MavMissionResult = MavMissionResult::MAV_MISSION_ACCEPTED;
 const LOCAL: u8 = MavFrame::MAV_FRAME_LOCAL_NED as u8;
-const RELATIVE: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
-const PERIOD_S: f64 = 0.002;
+pub const RELATIVE: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
+pub const PERIOD_S: f64 = 0.002;
 
 /// An autopilot that is to fly missions, not armed.
-fn station() -> Station {
+pub fn station() -> Station {
     let memory = Box::leak(Box::new(Memory::<4096>::new()));
     let mut autopilot = Autopilot::new(Boot::default()).with_memory(memory);
     autopilot.settings_mut().unwrap().set(Setting::DRIVE, 2.0).unwrap();
@@ -28,7 +28,7 @@ fn station() -> Station {
     Station::new(autopilot)
 }
 
-fn item(command: MavCmd, place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
+pub fn item(command: MavCmd, place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
     MISSION_ITEM_INT_DATA {
         command: command as u16,
         frame: LOCAL,
@@ -41,11 +41,11 @@ fn item(command: MavCmd, place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
     }
 }
 
-fn waypoint(place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
+pub fn waypoint(place: [f32; 3]) -> MISSION_ITEM_INT_DATA {
     item(MavCmd::MAV_CMD_NAV_WAYPOINT, place)
 }
 
-fn rest(place: [f32; 3], seconds: f32) -> MISSION_ITEM_INT_DATA {
+pub fn rest(place: [f32; 3], seconds: f32) -> MISSION_ITEM_INT_DATA {
     MISSION_ITEM_INT_DATA { param1: seconds, ..waypoint(place) }
 }
 
@@ -54,13 +54,13 @@ fn action(command: MavCmd, param1: f32, param2: f32) -> MISSION_ITEM_INT_DATA {
 }
 
 /// A line that loses a share of the frames either way.
-struct Lossy {
+pub struct Lossy {
     share: f64,
     random: Stream,
 }
 
 impl Lossy {
-    fn none() -> Self {
+    pub fn none() -> Self {
         Self { share: 0.0, random: Stream::new(1, 0, Purpose::Draw) }
     }
 
@@ -71,7 +71,7 @@ impl Lossy {
 
 /// Uploads as stations do: the count again, and the last item again, where no answer comes for half
 /// a second. The outcome, and what was said.
-fn upload(
+pub fn upload(
     station: &mut Station,
     items: &[MISSION_ITEM_INT_DATA],
     kind: MavMissionType,
@@ -123,7 +123,7 @@ fn upload(
 }
 
 /// Sends a mission over a good line, which is kept.
-fn send(station: &mut Station, items: &[MISSION_ITEM_INT_DATA]) {
+pub fn send(station: &mut Station, items: &[MISSION_ITEM_INT_DATA]) {
     let (result, said) = upload(station, items, MavMissionType::MAV_MISSION_TYPE_MISSION, &mut Lossy::none());
     assert_eq!((result, said), (KEPT as u8, vec![]));
 }
@@ -294,24 +294,24 @@ fn what_makes_no_route_is_refused_by_item_and_in_words() {
 }
 
 /// A vehicle under an autopilot, by its states.
-struct Flight {
-    station: Station,
-    body: Multibody,
+pub struct Flight {
+    pub station: Station,
+    pub body: Multibody,
     sequence: u32,
     /// What was said, and the items that were reached.
-    said: Vec<String>,
-    reached: Vec<u16>,
+    pub said: Vec<String>,
+    pub reached: Vec<u16>,
     states: Vec<u8>,
 }
 
 impl Flight {
-    fn at(station: Station, place: [f64; 3]) -> Self {
+    pub fn at(station: Station, place: [f64; 3]) -> Self {
         let state = State::at_rest(Vector3::from(place));
         let body = Multibody::new(VehicleParameters::default(), &state);
         Self { station, body, sequence: 0, said: vec![], reached: vec![], states: vec![] }
     }
 
-    fn step(&mut self) {
+    pub fn step(&mut self) {
         self.sequence += 1;
         self.station.time_ns += 2_000_000;
         self.station.autopilot.receive(&frame_of(&self.body.state().cast(), self.sequence));
@@ -333,13 +333,13 @@ impl Flight {
         }
     }
 
-    fn fly(&mut self, seconds: f64) {
+    pub fn fly(&mut self, seconds: f64) {
         for _ in 0..(seconds / PERIOD_S) as u32 {
             self.step();
         }
     }
 
-    fn fly_until(&mut self, what: &str, mut is_so: impl FnMut(&Self) -> bool) {
+    pub fn fly_until(&mut self, what: &str, mut is_so: impl FnMut(&Self) -> bool) {
         for _ in 0..300_000 {
             self.step();
             if is_so(self) {
@@ -349,16 +349,16 @@ impl Flight {
         panic!("never {what}: {:?} {:?}", self.said, self.reached)
     }
 
-    fn place(&self) -> Vector3<f64> {
+    pub fn place(&self) -> Vector3<f64> {
         self.body.state().position
     }
 
-    fn command(&mut self, command: MavCmd, param1: f32, param2: f32) -> (u8, Vec<String>) {
+    pub fn command(&mut self, command: MavCmd, param1: f32, param2: f32) -> (u8, Vec<String>) {
         self.station.command(command, param1, param2)
     }
 
     /// Takes the vehicle over in flight, to hold.
-    fn arm(&mut self) {
+    pub fn arm(&mut self) {
         self.station.ask(LoadMode::LOAD_MODE_HOLD);
         self.step();
         assert_eq!(self.command(MavCmd::MAV_CMD_COMPONENT_ARM_DISARM, 1.0, 0.0), (ACCEPTED, vec![]));
@@ -401,6 +401,11 @@ fn a_mission_is_flown_with_rests_pauses_holds_and_speeds() {
         (NOT_NOW, vec!["speed: above that of the route's leg".to_owned()])
     );
     assert_eq!(flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, 0.5).0, ACCEPTED);
+    // -1 changes nothing.
+    assert_eq!(flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, -1.0).0, ACCEPTED);
+    for speed in [0.0, -0.5, f32::NAN] {
+        assert_eq!(flight.command(MavCmd::MAV_CMD_DO_CHANGE_SPEED, 1.0, speed).0, NOT_NOW, "{speed}");
+    }
     assert_eq!(flight.command(MavCmd::MAV_CMD_DO_PAUSE_CONTINUE, 1.0, 0.0), (ACCEPTED, vec![]));
     flight.fly(8.0);
     let speed = flight.body.state().velocity.norm();
@@ -487,7 +492,59 @@ fn a_mission_waits_lands_and_goes_to_another_item_when_told() {
     flight.reached.clear();
     flight.station.ask(LoadMode::LOAD_MODE_FOLLOW);
     flight.fly_until("landing", |flight| flight.station.autopilot.mode() == Mode::Land);
-    assert!(flight.reached.ends_with(&[2, 3]), "{:?}", flight.reached);
+    assert_eq!(flight.reached, [2, 3]);
+}
+
+#[test]
+fn a_mission_begins_where_it_is_told_to_and_the_next_one_at_its_first_item() {
+    let mut station = station();
+    let places = [[0.0, 0.0, -10.0], [8.0, 0.0, -10.0], [8.0, 8.0, -10.0], [0.0, 8.0, -10.0]];
+    send(&mut station, &places.map(|place| rest(place, 0.1)));
+    let current = |flight: &mut Flight, seq: Option<u16>| {
+        let told = match seq {
+            Some(seq) => flight.station.say(&MavMessage::MISSION_SET_CURRENT(MISSION_SET_CURRENT_DATA {
+                seq,
+                ..MISSION_SET_CURRENT_DATA::DEFAULT
+            })),
+            None => flight.station.say(&MavMessage::COMMAND_LONG(COMMAND_LONG_DATA {
+                command: MavCmd::MAV_CMD_REQUEST_MESSAGE as u16,
+                param1: 42.0,
+                ..COMMAND_LONG_DATA::DEFAULT
+            })),
+        };
+        let seqs: Vec<_> = told
+            .into_iter()
+            .filter_map(|message| match message {
+                MavMessage::MISSION_CURRENT(current) => Some(current.seq),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(seqs.len(), 1);
+        seqs[0]
+    };
+    let set = MavCmd::MAV_CMD_DO_SET_MISSION_CURRENT;
+    let no_item = (NOT_NOW, vec!["mission: no such item".to_owned()]);
+    let mut flight = Flight::at(station, [8.0, 8.0, -10.0]);
+    assert_eq!(current(&mut flight, Some(3)), 3);
+    // -1 is the current one; what is no number is none.
+    for (number, answer) in
+        [(-1.0, (ACCEPTED, vec![])), (f32::NAN, no_item.clone()), (-2.0, no_item.clone()), (1e6, no_item)]
+    {
+        assert_eq!(flight.command(set, number, 0.0), answer, "{number}");
+        assert_eq!(current(&mut flight, None), 3, "{number}");
+    }
+    // It is flown from there, once.
+    flight.arm();
+    assert_eq!(current(&mut flight, None), 3);
+    flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0);
+    flight.fly_until("the end", |flight| flight.states.last() == Some(&(MissionState::MISSION_STATE_COMPLETE as u8)));
+    assert_eq!(flight.reached, [3]);
+    flight.station.autopilot.disarm();
+    assert_eq!(current(&mut flight, None), 0);
+    flight.reached.clear();
+    flight.arm();
+    flight.command(MavCmd::MAV_CMD_MISSION_START, 0.0, 0.0);
+    flight.fly_until("the second item", |flight| flight.reached == [0, 1]);
 }
 
 #[test]
@@ -548,11 +605,11 @@ fn places_on_the_earth_are_those_of_the_importer() {
     assert!(at.norm() < 0.01, "{at}");
 }
 
-fn fence(command: MavCmd, param1: f32, [n1, n2]: [f32; 2]) -> MISSION_ITEM_INT_DATA {
+pub fn fence(command: MavCmd, param1: f32, [n1, n2]: [f32; 2]) -> MISSION_ITEM_INT_DATA {
     MISSION_ITEM_INT_DATA { param1, ..item(command, [n1, n2, 0.0]) }
 }
 
-fn polygon(command: MavCmd, corners: &[[f32; 2]]) -> Vec<MISSION_ITEM_INT_DATA> {
+pub fn polygon(command: MavCmd, corners: &[[f32; 2]]) -> Vec<MISSION_ITEM_INT_DATA> {
     corners.iter().map(|&corner| fence(command, corners.len() as f32, corner)).collect()
 }
 

@@ -10,14 +10,14 @@ const RECORDS: usize = 96;
 
 /// Flash whose power fails after so many bytes, in the middle of a write or an erasure.
 #[derive(Clone)]
-struct Torn {
+pub struct Torn {
     pages: [[u8; RECORDS * RECORD]; 2],
     /// Bytes until the power fails.
     left: Rc<Cell<usize>>,
 }
 
 impl Torn {
-    fn new() -> Self {
+    pub fn new() -> Self {
         // As it comes: anything.
         Self { pages: [[0x5A; RECORDS * RECORD]; 2], left: Rc::new(Cell::new(usize::MAX)) }
     }
@@ -185,7 +185,7 @@ fn kept<F: Flash>(store: &Store<F>, kind: Kind) -> String {
     text(&store.items(kind).collect::<Vec<_>>())
 }
 
-fn open(flash: Torn) -> Store<Torn> {
+pub fn open(flash: Torn) -> Store<Torn> {
     Store::open(flash, &mut Settings::default()).unwrap()
 }
 

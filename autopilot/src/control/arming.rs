@@ -1,6 +1,6 @@
 //! Arming and its refusals, disarming, and the kill switches.
 
-use controller::{Actuation as _, Request};
+use controller::{Actuation as _, Request, State};
 use rig::{Rig, SetupError, parameter};
 
 use super::{Absence, Autopilot, Drive, Notice, Underway};
@@ -21,8 +21,10 @@ const PRESSED: u8 = 3;
 pub enum ArmRefused {
     /// The parameters make no controller.
     Setup(SetupError<f32>),
-    /// The mission is to be flown, and can't be.
+    /// The mission is to be flown, and can't be; or there is a fence that can't be kept.
     Mission(Refusal),
+    /// Load, UAV or cable is too near the fence.
+    Fence,
     /// Limits and rotors give no more than this share of the hover thrust.
     Weak(f32),
     /// There has been no good state just now.
@@ -49,6 +51,7 @@ impl core::fmt::Display for ArmRefused {
         match self {
             Self::Setup(error) => error.fmt(f),
             Self::Mission(refusal) => f.write_str(&refusal.text),
+            Self::Fence => f.write_str("not armed: too near the fence, or outside"),
             Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),
             Self::Unseen(Unseen::Fix) => f.write_str("not armed: waits for a fix of the receiver"),
@@ -91,7 +94,15 @@ impl Autopilot {
             if self.drive() == Drive::Flight && apart_s > most {
                 return Err(ArmRefused::Slow(apart_s, most));
             }
-            let stands = self.request == Request::Idle || self.stands;
+            self.mission.lay_fence().map_err(ArmRefused::Mission)?;
+            if self.drive() == Drive::Lockstep {
+                // No time goes by without a state: the last may be of another flight.
+                self.load = None;
+            }
+            let stands = self.is_to_stand();
+            if !self.stays_in_fence(stands) {
+                return Err(ArmRefused::Fence);
+            }
             if let Some(estimator) = &mut self.estimator {
                 estimator.restart(&self.settings, stands).map_err(|error| ArmRefused::Setup(error.into()))?;
             }
@@ -106,11 +117,26 @@ impl Autopilot {
             self.inbox = None;
             self.epoch = Epoch::default();
             (self.newest, self.newest_uav) = (None, None);
+            (self.until_fence, self.keeps_fence) = (0, true);
             self.blind_s = 0.0;
             self.last = None;
             self.until_telemetry = 0;
         }
         Ok(())
+    }
+
+    /// Whether it is to be armed on the ground.
+    fn is_to_stand(&self) -> bool {
+        self.request == Request::Idle || self.stands
+    }
+
+    /// Whether the vehicle keeps the fence, as far as it is seen just now.
+    fn stays_in_fence(&self, stands: bool) -> bool {
+        let now = self.load.as_ref().filter(|_| self.since_state_s <= FRESH_S);
+        let Some(State { position, rod, .. }) = now else { return true };
+        let above = position - rod * self.settings.rig().get(parameter!("VEH_ROD"));
+        let uav = self.uav.map_or(above, |uav| uav.position);
+        self.mission.keeps_fence(&[*position, uav], stands, &self.settings)
     }
 
     fn make_rig(&mut self) -> Result<Rig<f32, Flown>, ArmRefused> {
@@ -130,6 +156,7 @@ impl Autopilot {
         self.stands &= !self.is_flying();
         if let Some(rig) = self.rig.take() {
             self.mission.take_back(rig);
+            self.mission.begin_again();
         }
         self.fault = None;
         self.request = Request::Idle;
@@ -153,7 +180,8 @@ impl Autopilot {
     /// Whether nothing of the moment keeps it from being armed.
     pub(crate) fn is_ready(&self) -> bool {
         let is_lost = Loss::ALL.into_iter().any(|loss| self.failsafe.is_lost(loss, &self.settings));
-        self.since_state_s <= FRESH_S && !self.is_killed() && !is_lost
+        let is_well_placed = self.is_armed() || self.stays_in_fence(self.is_to_stand());
+        self.since_state_s <= FRESH_S && !self.is_killed() && !is_lost && is_well_placed
     }
 
     fn is_killed(&self) -> bool {

@@ -1,7 +1,7 @@
 //! A mission under way: what its end leads to, pause and continue, speed, and the item that comes
 //! next.
 
-use controller::{Mode, Request, State, Uav, Vector3};
+use controller::{Mode, Request, State, Vector3};
 use link::Home;
 use rig::parameter;
 
@@ -83,7 +83,8 @@ impl Autopilot {
     /// Not while armed: what is flown is counted from it.
     pub(crate) fn set_home(&mut self, home: Home) -> Result<(), &'static str> {
         if self.mission.home() != Some(&home) {
-            self.mission_mut().ok_or("home: not while armed")?.0.set_home(home);
+            let (mission, settings) = self.mission_mut().ok_or("home: not while armed")?;
+            mission.set_home(home, settings);
             self.navigation.instruments_mut().set_home(&home);
             // What it has found is counted from another place.
             self.estimator = None;
@@ -128,7 +129,7 @@ impl Autopilot {
             return None;
         }
         let Flown::Route(route) = self.rig.as_ref()?.following()?.path() else { return None };
-        let State { position, rod, .. } = self.newest.as_ref()?;
+        let State { position, rod, .. } = self.load.as_ref()?;
         let rig = self.settings.rig();
         let up = Vector3::new(0.0, 0.0, -rig.get(parameter!("VEH_ROD")));
         let from = if self.mode() == Mode::Idle {
@@ -139,6 +140,19 @@ impl Autopilot {
             [*position, above]
         };
         self.mission.way_breach(&from, &[route.point(), route.point() + up], &self.settings)
+    }
+
+    /// The same by a command's number, of which −1 is the item that is current.
+    ///
+    /// # Errors
+    /// Why not now, or that there is no such item.
+    pub(crate) fn set_current_item_by(&mut self, number: f32) -> Result<(), &'static str> {
+        let item = if number == -1.0 { f32::from(self.current_item()) } else { number };
+        if (0.0..=f32::from(u16::MAX)).contains(&item) {
+            self.set_current_item(item as u16)
+        } else {
+            Err("mission: no such item")
+        }
     }
 
     /// Has the mission go on with the legs since the stop before `item`.
@@ -168,15 +182,19 @@ impl Autopilot {
         Ok(())
     }
 
-    /// Flies the route at `speed`, m/s, from now on, where its leg allows that; as it is laid,
-    /// where that is negative.
+    /// Flies the route at `speed`, m/s, from now on, where its leg allows that. −1 leaves it as it
+    /// is, −2 has it flown as it is laid.
     ///
     /// # Errors
     /// Why not now.
     pub(crate) fn change_speed(&mut self, speed: f32) -> Result<(), &'static str> {
         let next = self.progress().ok_or(NO_ROUTE)?.passed;
         let most = self.mission.speed_to(next).ok_or(NO_ROUTE)?;
-        let factor = if speed < 0.0 { 1.0 } else { speed / most };
+        let factor = match speed {
+            -1.0 => return Ok(()),
+            -2.0 => 1.0,
+            speed => speed / most,
+        };
         // What the vehicle can do was found out for the leg's own.
         if factor > 1.0 {
             return Err("speed: above that of the route's leg");
@@ -204,33 +222,42 @@ impl Autopilot {
         }
     }
 
-    /// Every so many steps: has load, UAV and cable come too near the fence, it does what is
-    /// configured.
-    pub(super) fn watch_fence(&mut self, state: &State<f32>, uav: Option<&Uav<f32>>, mode: Mode) {
-        if self.until_fence > 0 || !matches!(mode, Mode::Join | Mode::Follow | Mode::Hold) {
+    /// Every so many steps: has load, UAV or cable come too near the fence, it does what is
+    /// configured. Where the load is not known, the UAV alone is looked at.
+    pub(super) fn watch_fence(&mut self, load: Option<Vector3<f32>>, mode: Mode) {
+        let is_watched = matches!(mode, Mode::TakeOff | Mode::Join | Mode::Follow | Mode::Hold);
+        let uav = self.uav.map(|uav| uav.position).filter(|_| is_watched && self.until_fence == 0);
+        let Some(uav) = uav else {
             self.until_fence = self.until_fence.saturating_sub(1);
             return;
-        }
+        };
         self.until_fence = FENCE_EVERY;
-        let length = self.settings.rig().get(parameter!("VEH_ROD"));
-        let above = uav.map_or(state.position - state.rod * length, |uav| uav.position);
-        let keeps = self.mission.keeps_fence(&state.position, &above, &self.settings);
+        let rises = mode == Mode::TakeOff;
+        let keeps = self.mission.keeps_fence(&[load.unwrap_or(uav), uav], rises, &self.settings);
         if self.keeps_fence && !keeps {
             self.note(Notice::Fence);
             if let Some(wanted) = wanted(Setting::FENCE_ACTION, &self.settings)
                 && self.request != Request::Land
             {
-                self.request(wanted);
+                // Hold is where a take-off ends, and does not end it sooner.
+                self.request(if rises { Request::Land } else { wanted });
             }
         }
-        self.keeps_fence = keeps;
+        // That the UAV is back says nothing of the load.
+        self.keeps_fence = keeps && (self.keeps_fence || load.is_some());
     }
 
-    /// The item that the load is on its way to, or is at.
+    /// The item that the load is on its way to, or is at; before a flight, the one that it begins
+    /// with.
     #[must_use]
     pub(crate) fn current_item(&self) -> u16 {
-        let next = self.progress().map_or(0, |progress| progress.passed);
+        let next = self.progress().map_or_else(|| self.before_run(), |progress| progress.passed);
         self.mission.item_of(next).unwrap_or_default()
+    }
+
+    /// How many waypoints lie before the run that is flown, or that is to be.
+    pub(crate) fn before_run(&self) -> usize {
+        self.mission.before_run(self.rig.as_ref())
     }
 
     /// An item that is kept.

@@ -26,7 +26,7 @@ pub use mission::MissionState;
 pub use words::{Absence, Answer, Boot, Counters, Drive, Notice};
 
 use controller::{Actuation as _, Fault, Margin, Mode, Request, State, Uav};
-use link::dialect::{LOAD_COUNTERS_DATA, LOAD_STATE_DATA, MavLandedState};
+use link::dialect::{LOAD_COUNTERS_DATA, LOAD_STATE_DATA, MavLandedState, MavMissionResult};
 use rig::{Output, Rig, parameter};
 
 use crate::epoch::Epoch;
@@ -62,6 +62,8 @@ pub struct Autopilot {
     /// The vehicle is known to stand on the ground.
     stands: bool,
     epoch: Epoch,
+    /// The load as it was known last.
+    load: Option<State<f32>>,
     /// The last state that has come, and what was wrong with those since the last control period.
     newest: Option<State<f32>>,
     newest_uav: Option<Uav<f32>>,
@@ -116,6 +118,7 @@ impl Autopilot {
             uav: None,
             stands: false,
             epoch: Epoch::default(),
+            load: None,
             newest: None,
             newest_uav: None,
             refused: None,
@@ -146,12 +149,15 @@ impl Autopilot {
     /// Takes the mission and the fence that `store` has kept.
     ///
     /// # Errors
-    /// One of them makes no route or fence any more, and is not taken.
+    /// One of them makes no route or fence any more, or the route does not keep the fence's margin:
+    /// both are kept, and arming is refused as it would have been without a reset.
     pub fn recall<F: Flash>(&mut self, store: &Store<F>) -> Result<(), Refusal> {
-        let Self { mission, settings, .. } = self;
-        let recall = |kind| mission.recall(kind, store.items(kind), settings);
-        // Both, before one of them is an error.
-        Kind::ALL.map(recall).into_iter().collect()
+        Kind::ALL.into_iter().for_each(|kind| self.mission.recall(kind, store.items(kind)));
+        match self.mission.lay(&self.settings) {
+            // The home may come later.
+            Err(refusal) if refusal.result != MavMissionResult::MAV_MISSION_ERROR => Err(refusal),
+            _ => Ok(()),
+        }
     }
 
     /// The parameters.

@@ -130,7 +130,8 @@ impl Autopilot {
             None => refused.or(unseen.map(Absence::Unseen)).or(Some(Absence::Missing)),
         };
         let period_s = self.period_s();
-        if good.is_some() {
+        if let Some(state) = good {
+            self.load = Some(*state);
             let apart_s = if self.since_state_s.is_finite() { self.since_state_s } else { 0.0 };
             self.apart_s = [self.apart_s[1], apart_s];
         }
@@ -212,9 +213,7 @@ impl Autopilot {
             answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(sequence, rig, state, integral));
         }
         self.end_mission(mode);
-        if let Some(state) = good {
-            self.watch_fence(state, seen.uav(), mode);
-        }
+        self.watch_fence(good.map(|state| state.position), mode);
         let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
         self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
         if is_down {

@@ -3,7 +3,7 @@
 use controller::{FenceEdge, FenceRegion, Real, Route, Run, Table, Vector3};
 use link::Home;
 
-use super::item::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, Item, POLYGON_INSIDE, POLYGON_OUTSIDE, Refusal};
+use super::item::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, Item, Kind, POLYGON_INSIDE, POLYGON_OUTSIDE, Refusal};
 use super::{ITEMS, lay};
 
 /// What of the vehicle is where it may not be.
@@ -44,6 +44,7 @@ impl Fence {
         self.places.clear();
         let mut number = 0;
         while let Some(item) = items.get(number) {
+            item.check(Kind::Fence, number)?;
             let is_inside = matches!(item.command, POLYGON_INSIDE | CIRCLE_INSIDE);
             let [first, ..] = item.params;
             let is_polygon = matches!(item.command, POLYGON_INSIDE | POLYGON_OUTSIDE);
@@ -61,8 +62,8 @@ impl Fence {
                 radius,
             };
             for (offset, corner) in of.iter().enumerate() {
-                let [n1, n2, _] =
-                    lay::place(&Item { z: 0.0, ..*corner }, number.saturating_add(offset), home, [0.0; 3])?;
+                let corner = Item { z: 0.0, ..*corner };
+                let [n1, n2, _] = lay::place(&corner, Kind::Fence, number.saturating_add(offset), home, [0.0; 3])?;
                 let _ = self.places.push([n1, n2]);
             }
             let _ = self.areas.push(area);

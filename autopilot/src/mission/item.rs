@@ -57,6 +57,14 @@ impl Kind {
         }
     }
 
+    /// What its items are called.
+    pub(super) fn item(self) -> &'static str {
+        match self {
+            Self::Mission => "item",
+            Self::Fence => "fence item",
+        }
+    }
+
     /// As a MAV_MISSION_TYPE.
     pub fn number(self) -> u8 {
         match self {
@@ -171,21 +179,22 @@ impl Item {
     pub fn check(&self, kind: Kind, number: usize) -> Result<(), Refusal> {
         use MavMissionResult as R;
         let Self { command, frame, params: [first, second, ..], z, .. } = *self;
+        let item = kind.item();
         let within = |what: &str, value: f32, most: f32, result| {
             if (0.0..=most).contains(&value) {
                 return Ok(());
             }
-            Err(Refusal::new(result, format_args!("item {number}: {what} {value} not in 0 to {most}")))
+            Err(Refusal::new(result, format_args!("{item} {number}: {what} {value} not in 0 to {most}")))
         };
         match (kind, command) {
             (Kind::Mission, WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF | LAND) => {
                 if ![GLOBAL, GLOBAL_INT, RELATIVE, RELATIVE_INT, LOCAL].contains(&frame) {
-                    let text = format_args!("item {number}: frame {frame} not supported");
+                    let text = format_args!("{item} {number}: frame {frame} not supported");
                     return Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED_FRAME, text));
                 }
-                self.check_place(number)?;
+                self.check_place(item, number)?;
                 if command != LAND && (z.is_nan() || z.abs() > 1e5) {
-                    let text = format_args!("item {number}: height {z} m");
+                    let text = format_args!("{item} {number}: height {z} m");
                     return Err(Refusal::new(R::MAV_MISSION_INVALID_PARAM7, text));
                 }
                 if matches!(command, WAYPOINT | SPLINE_WAYPOINT | LOITER_TIME) {
@@ -206,21 +215,21 @@ impl Item {
             (Kind::Mission, RETURN_TO_LAUNCH) => Ok(()),
             (Kind::Mission, JUMP) => within("jump to", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
             (Kind::Fence, POLYGON_INSIDE | POLYGON_OUTSIDE) => {
-                self.check_place(number)?;
+                self.check_place(item, number)?;
                 within("corners", first, 1e3, R::MAV_MISSION_INVALID_PARAM1)
             }
             (Kind::Fence, CIRCLE_INSIDE | CIRCLE_OUTSIDE) => {
-                self.check_place(number)?;
+                self.check_place(item, number)?;
                 within("radius", first, 1e5, R::MAV_MISSION_INVALID_PARAM1)
             }
             _ => {
-                let text = format_args!("item {number}: command {command} not supported");
+                let text = format_args!("{item} {number}: command {command} not supported");
                 Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED, text))
             }
         }
     }
 
-    fn check_place(&self, number: usize) -> Result<(), Refusal> {
+    fn check_place(&self, item: &str, number: usize) -> Result<(), Refusal> {
         if self.is_local() || !self.is_placed() {
             return Ok(());
         }
@@ -229,7 +238,7 @@ impl Item {
                 return Ok(());
             }
             let degrees = f64::from(value) * DEGREES;
-            Err(Refusal::new(result, format_args!("item {number}: {name} {degrees:.1} degrees")))
+            Err(Refusal::new(result, format_args!("{item} {number}: {name} {degrees:.1} degrees")))
         };
         far("latitude", self.x, 900_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)?;
         far("longitude", self.y, 1_800_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y)

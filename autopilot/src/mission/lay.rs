@@ -5,8 +5,8 @@ use link::Home;
 use link::dialect::MavMissionResult;
 
 use super::item::{
-    CHANGE_SPEED, DEGREES, DELAY, Item, JUMP, LAND, LOITER_TIME, LOITER_UNLIMITED, METRES, RETURN_TO_LAUNCH, Refusal,
-    SPLINE_WAYPOINT, TAKE_OFF, WAYPOINT,
+    CHANGE_SPEED, DEGREES, DELAY, Item, JUMP, Kind, LAND, LOITER_TIME, LOITER_UNLIMITED, METRES, RETURN_TO_LAUNCH,
+    Refusal, SPLINE_WAYPOINT, TAKE_OFF, WAYPOINT,
 };
 use super::{Pace, STOPS};
 
@@ -50,10 +50,11 @@ impl Waypoints {
             if is_over {
                 return Err(Refusal::invalid(format_args!("item {number}: behind the mission's end")));
             }
+            item.check(Kind::Mission, number)?;
             let [first, second, _, heading] = item.params;
             match item.command {
                 WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF => {
-                    last = place(item, number, home, last)?;
+                    last = place(item, Kind::Mission, number, home, last)?;
                     let stop = match item.command {
                         LOITER_UNLIMITED => Some(f32::INFINITY),
                         LOITER_TIME => Some(first),
@@ -78,7 +79,7 @@ impl Waypoints {
                     if item.command == RETURN_TO_LAUNCH {
                         (last[0], last[1]) = (0.0, 0.0);
                     } else if item.is_local() || item.is_placed() {
-                        let [n1, n2, _] = place(&Item { z: 0.0, ..*item }, number, home, last)?;
+                        let [n1, n2, _] = place(&Item { z: 0.0, ..*item }, Kind::Mission, number, home, last)?;
                         (last[0], last[1]) = (n1, n2);
                     }
                     self.add(number, passing(last, speed, pace))?;
@@ -103,7 +104,7 @@ impl Waypoints {
                     course.end = End::Again(if second < 0.0 { u32::MAX } else { second as u32 });
                     is_over = true;
                 }
-                // Refused when it came.
+                // Refused above.
                 _ => {}
             }
         }
@@ -151,12 +152,18 @@ fn near(a: &[f32; 3], b: &[f32; 3]) -> bool {
 }
 
 /// In N, m. An item that says no place on the earth is where the `last` one is.
-pub(super) fn place(item: &Item, number: usize, home: Option<&Home>, last: [f32; 3]) -> Result<[f32; 3], Refusal> {
+pub(super) fn place(
+    item: &Item,
+    kind: Kind,
+    number: usize,
+    home: Option<&Home>,
+    last: [f32; 3],
+) -> Result<[f32; 3], Refusal> {
     if item.is_local() {
         return Ok([local(item.x), local(item.y), item.z]);
     }
     let no_home = || {
-        let text = format_args!("item {number}: on the earth, but no home is set");
+        let text = format_args!("{} {number}: on the earth, but no home is set", kind.item());
         Refusal::new(MavMissionResult::MAV_MISSION_ERROR, text)
     };
     let up = if item.is_above_sea() {
@@ -170,7 +177,7 @@ pub(super) fn place(item: &Item, number: usize, home: Option<&Home>, last: [f32;
     }
     let [n1, n2] = on_earth(item, home.ok_or_else(no_home)?, up);
     if !(n1.abs() <= FURTHEST && n2.abs() <= FURTHEST) {
-        return Err(Refusal::invalid(format_args!("item {number}: more than 100 km from home")));
+        return Err(Refusal::invalid(format_args!("{} {number}: more than 100 km from home", kind.item())));
     }
     Ok([n1, n2, -up])
 }

@@ -201,8 +201,10 @@ impl Mission {
         self.course.lands
     }
 
-    pub(crate) fn set_home(&mut self, home: Home) {
+    /// Counts from `home` from now on. What can't be laid about it, arming refuses.
+    pub(crate) fn set_home(&mut self, home: Home, settings: &Settings) {
         self.home = Some(home);
+        let _ = self.lay(settings);
     }
 
     /// Begins to take items in.
@@ -253,24 +255,13 @@ impl Mission {
         }
     }
 
-    /// Takes `items` that were kept over a reset.
-    ///
-    /// # Errors
-    /// They make no route any more, and are not taken.
-    pub(crate) fn recall(
-        &mut self,
-        kind: Kind,
-        items: impl Iterator<Item = Item>,
-        settings: &Settings,
-    ) -> Result<(), Refusal> {
-        self.begin()?;
-        for item in items {
-            self.take(kind, item)?;
-        }
-        if self.coming() > 0 {
-            self.keep(kind, settings)?;
-        }
-        Ok(())
+    /// Takes `items` that were kept over a reset, whatever they are: to lay them comes next.
+    pub(crate) fn recall(&mut self, kind: Kind, items: impl Iterator<Item = Item>) {
+        let Some(lists) = &mut self.lists else { return };
+        let kept = lists.kept(kind);
+        kept.clear();
+        // None are kept that do not fit.
+        kept.extend(items.take(ITEMS));
     }
 
     /// Forgets what there is of a kind.
@@ -282,8 +273,20 @@ impl Mission {
         let _ = self.lay(settings);
     }
 
-    /// Lays the route, if there is a mission.
-    fn lay(&mut self, settings: &Settings) -> Result<(), Refusal> {
+    /// Lays the fence, whatever path is to be flown.
+    ///
+    /// # Errors
+    /// It can't be, and keeps nothing out.
+    pub(crate) fn lay_fence(&mut self) -> Result<(), Refusal> {
+        let Some(lists) = &mut self.lists else { return Ok(()) };
+        lists.regions.lay(&lists.fence, self.home.as_ref())
+    }
+
+    /// Lays the fence, and the route if there is a mission.
+    ///
+    /// # Errors
+    /// One of them can't be, or the route does not keep the fence's margin.
+    pub(crate) fn lay(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let Self { lists, home, laid, course, .. } = self;
         let Lists { mission, fence, waypoints, marks, regions, .. } = &mut **lists.as_mut().ok_or_else(no_memory)?;
         marks.clear();
@@ -331,10 +334,12 @@ impl Mission {
     }
 
     /// Whether load, UAV and cable keep half of the margin from the fence: the other half is what
-    /// it takes to stop.
-    pub(crate) fn keeps_fence(&self, load: &Vector3<f32>, uav: &Vector3<f32>, settings: &Settings) -> bool {
+    /// it takes to stop. From the ground, where it `rises`, the least height is yet to be reached.
+    pub(crate) fn keeps_fence(&self, bodies: &[Vector3<f32>; 2], rises: bool, settings: &Settings) -> bool {
         let Some(lists) = &self.lists else { return true };
-        lists.regions.keeps(&[*load, *uav], &keeping(settings, 0.5))
+        let Keeping { margin, up: [low, high] } = keeping(settings, 0.5);
+        let low = if rises { f32::NEG_INFINITY } else { low };
+        lists.regions.keeps(bodies, &Keeping { margin, up: [low, high] })
     }
 
     /// What of load, UAV and cable does not keep the margin on the straight way between two places
@@ -377,6 +382,20 @@ impl Mission {
         if let Some(Flown::Route(route)) = rig.into_path() {
             self.laid = Some(route.into_table());
         }
+    }
+
+    /// The next flight begins where the mission does.
+    pub(crate) fn begin_again(&mut self) {
+        self.first = 0;
+    }
+
+    /// How many waypoints lie before the run that `rig` flies, or else is to begin with.
+    pub(crate) fn before_run(&self, rig: Option<&Rig<f32, Flown>>) -> usize {
+        let run = match rig.and_then(Rig::following).map(Follow::path) {
+            Some(Flown::Route(route)) => route.run(),
+            _ => self.first,
+        };
+        self.marks().iter().take_while(|mark| mark.at.run < run).count()
     }
 
     /// Where `rig` is along the mission, if it flies that.

@@ -82,7 +82,7 @@ impl Server {
                     PAUSE if [0.0, 1.0].contains(&request.param1) => autopilot.pause(request.param1 == 0.0),
                     PAUSE => Err("param1 is 0 to pause, 1 to go on"),
                     SPEED => autopilot.change_speed(request.param2),
-                    _ => autopilot.set_current_item(request.param1 as u16),
+                    _ => autopilot.set_current_item_by(request.param1),
                 };
                 match done {
                     Ok(()) => MavResult::MAV_RESULT_ACCEPTED,

@@ -270,6 +270,10 @@ impl Server {
             return Some(upload.request(autopilot));
         }
         let passed = autopilot.progress().map_or(0, |progress| progress.passed);
+        if autopilot.mode() != controller::Mode::Follow {
+            // What is gone past by command is not reached.
+            transfer.reached = transfer.reached.max(autopilot.before_run());
+        }
         if passed > transfer.reached && autopilot.mode() == controller::Mode::Follow {
             let seq = autopilot.mission().item_of(transfer.reached);
             transfer.reached += 1;
