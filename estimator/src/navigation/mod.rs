@@ -56,7 +56,7 @@ pub struct Fix<T> {
     pub position_accuracy: [T; 2],
     /// Of the velocity, m/s.
     pub velocity_accuracy: [T; 2],
-    /// How old it is, s, 0 to 0.3.
+    /// How old it is, s: 0 to 150 periods, 0.3 s at 500 Hz.
     pub age: T,
 }
 
@@ -92,7 +92,7 @@ pub struct NavigationHealth<T> {
     pub tilt_deviation: T,
     /// Since the last fix that was taken, s.
     pub fix_age: T,
-    /// The IMU has been silent for more than 0.1 s.
+    /// The IMU has been silent for more than 50 periods, 0.1 s at 500 Hz.
     pub is_blind: bool,
     /// How often it has started anew.
     pub resets: u16,

@@ -13,7 +13,7 @@ use model::{Real, Vector3};
 
 use super::strapdown::Moved;
 
-/// Entries: 0.3 s at 30 ms.
+/// Entries, half cycles apart: 150 periods, 0.3 s at 500 Hz.
 const ENTRIES: usize = 11;
 
 #[derive(Clone, Debug)]

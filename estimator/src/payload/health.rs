@@ -16,13 +16,13 @@ pub enum Cable {
 pub enum Validity {
     /// As good as its standard deviation says.
     Valid,
-    /// Not known to 0.15 rad, or not to 0.04 rad an axis for six seconds, or to 0.15 rad for twelve,
-    /// yet.
+    /// Not known to 0.15 rad, or not to 0.04 rad an axis for 3030 periods (6 s at 500 Hz), or to
+    /// 0.15 rad for twice as many, yet.
     Converging,
-    /// The thrust model and the rod have disagreed for a second beyond what noise explains:
-    /// something is not as told.
+    /// The thrust model and the rod have disagreed for some 500 periods, 1 s at 500 Hz, beyond what
+    /// noise explains: something is not as told.
     Inconsistent,
-    /// Inputs have been missing for more than 0.1 s.
+    /// Inputs have been missing for more than 50 periods, 0.1 s at 500 Hz.
     Blind,
     /// The cable is slack: there is no rod.
     Slack,
@@ -37,8 +37,8 @@ pub struct Health<T> {
     pub rod_deviation: T,
     /// Of its rate, 1/s.
     pub rate_deviation: T,
-    /// Mean over a second of ν²/S of the thrust model's three scalars: 1 where the noise is as
-    /// told.
+    /// Mean over some 500 periods, 1 s at 500 Hz, of ν²/S of the thrust model's three scalars: 1
+    /// where the noise is as told.
     pub surprise: [T; 3],
 }
 
@@ -75,7 +75,7 @@ impl<T: Real> CableWatch<T> {
     /// Takes the `pull` of a window, N, with the payload's `weight`, N. Returns whether the cable
     /// has just changed.
     pub(super) fn look(&mut self, pull: &Vector3<T>, weight: T) -> bool {
-        // A third each: over some 0.1 s.
+        // Over some two windows.
         self.pull += (pull - self.pull) * T::lit(0.4);
         if self.settling > 0 {
             self.settling -= 1;

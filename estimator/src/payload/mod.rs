@@ -6,7 +6,7 @@
 //!
 //! A cycle of 30 periods (60 ms at 500 Hz) spreads the work: every period moves the pendulum on and
 //! sums up the thrust model's residual; the [covariance](predict) moves in one of them, and each
-//! scalar has one of its own.
+//! scalar has one of its own. What the filter waits for it counts in periods and cycles.
 
 mod glide;
 mod health;
@@ -395,8 +395,8 @@ impl<T: Real> Payload<T> {
         }
     }
 
-    /// What is measured has been far from what was expected for a second: the filter is sure of a
-    /// rod that is not there. Less far will do where no mass is small or large enough for it.
+    /// What is measured has been far from what was expected for long: the filter is sure of a rod
+    /// that is not there. Less far will do where no mass is small or large enough for it.
     fn is_astray(&self) -> bool {
         let ([x, y, z], [rod_x, rod_y]) = (self.health.surprise, self.load_surprise);
         let most = if self.state.is_mass_at_bound() { CONSISTENT } else { ASTRAY };
@@ -465,7 +465,7 @@ impl<T: Real> Payload<T> {
         if !is_witnessed {
             self.batch.follow(axis, &scalar.h, &gain, |axis| self.linearized.correlation(&self.params, &body[axis]));
         }
-        // Over a second.
+        // Over some 17 cycles, 1 s at 500 Hz.
         *mean += (surprise.min(T::lit(WILD)) - *mean) * T::lit(0.06);
     }
 
