@@ -1,6 +1,6 @@
 /* A route with a stop, flown from an IMU and a receiver alone: nobody measures the load. Hold until its estimate is good, join, rest
  * at the stop, pause on the way, and land where the route ends. */
-#include "plant.h"
+#include "instruments.h"
 
 #include <stdio.h>
 
@@ -14,27 +14,6 @@ static int refused(const char *what, int32_t status, const slung_error *error) {
     }
     fputc('\n', stderr);
     return 1;
-}
-
-/* The UAV's place and velocity. */
-static void uav_of(const slung_state *s, float position[3], float velocity[3]) {
-    for (int i = 0; i < 3; ++i) {
-        position[i] = s->payload_position_ned_m[i] - LENGTH * s->rod_ned[i];
-        velocity[i] = s->payload_velocity_ned_m_s[i] - LENGTH * s->rod_rate_ned_1_s[i];
-    }
-}
-
-/* A period of the plant, and what its accelerometer has as the mean of it, in body axes. */
-static void fly_and_feel(slung_state *s, const slung_output *output, float specific_force[3]) {
-    float p[3], before[3], after[3];
-    uav_of(s, p, before);
-    fly(s, output->thrust_n, output->torque_frd_n_m);
-    uav_of(s, p, after);
-    for (int i = 0; i < 3; ++i) {
-        specific_force[i] = 0.0f;
-        for (int k = 0; k < 3; ++k)
-            specific_force[i] += s->attitude_frd_to_ned[3 * k + i] * ((after[k] - before[k]) / PERIOD - (k == 2 ? GRAVITY : 0.0f));
-    }
 }
 
 int main(void) {
@@ -98,7 +77,7 @@ int main(void) {
         if (n == 0) slung_take_over(&controller, &load.state, &hover);
 
         const uint32_t wanted = n < 5000 ? SLUNG_HOLD : SLUNG_FOLLOW;
-        slung_step_measured(&controller, load.validity == SLUNG_VALID ? &load.state : NULL, SLUNG_NED_FRD, &found.uav,
+        slung_step_measured(&controller, load.validity == SLUNG_VALID ? &load.state : NULL, SLUNG_NED_FRD, &load.uav,
                             found.specific_force_body_m_s2, wanted, &output);
         if (n == 27500) slung_set_speed_factor(&controller, 0.0f); /* pause, */
         if (n == 31000) slung_set_speed_factor(&controller, 1.0f); /* and go on */

@@ -24,11 +24,13 @@
  *
  * Memory. Instances live in the caller's memory, need no destruction, and may be copied with memcpy: they hold no pointers, but
  * for those of a route to its table. The library allocates nothing, has no globals, and uses no libm. A step takes a bounded time
- * and at most 2 KiB of stack, a circle's 1.7 KiB; slung_create takes at most 18 KiB. Call the functions of one instance from one context at a time, with the FPU's context saved
- * as for any C function that uses floats.
+ * and at most 2.2 KiB of stack, a circle's 1.8 KiB; slung_create takes at most 18 KiB. Call the functions of one instance from one
+ * context at a time, with the FPU's context saved as for any C function that uses floats.
  *
- * Errors. Every call returns SLUNG_OK or a negative status, and changes nothing when it refuses. slung_step is total: whatever
- * bits the state holds, the output is finite and within the limits, and says why in mode, fault and warning.
+ * Errors. Every call returns SLUNG_OK or a negative status, and changes nothing when it refuses, with two exceptions: a step with
+ * an unknown request is flown, on the last one, and a state that is not to be trusted (SLUNG_BAD_STATE) is written. What is lent to
+ * slung_route_build may be written to. slung_step is total: whatever bits the state holds, the output is finite and within the
+ * limits, and says why in mode, fault and warning.
  */
 #ifndef SLUNG_H
 #define SLUNG_H
@@ -114,9 +116,10 @@ enum slung_fault {
 /* What an estimate of the rod is worth, as uint32_t. */
 enum slung_validity {
     SLUNG_VALID = 0,        /* as good as its deviation says */
-    SLUNG_CONVERGING = 1,   /* not known yet to 0.15 rad */
-    SLUNG_INCONSISTENT = 2, /* thrust and rod have disagreed for a second: something is not as told */
-    SLUNG_BLIND = 3,        /* inputs have been missing for more than 0.1 s */
+    SLUNG_CONVERGING = 1,   /* not known to 0.15 rad, or not to 0.04 rad an axis for 3030 periods (6 s at 500 Hz), or to 0.15 rad for
+                               twice as many, yet */
+    SLUNG_INCONSISTENT = 2, /* thrust and rod have disagreed for some 500 periods, 1 s at 500 Hz: something is not as told */
+    SLUNG_BLIND = 3,        /* inputs have been missing for more than 50 periods, 0.1 s at 500 Hz */
     SLUNG_SLACK_CABLE = 4   /* there is no rod */
 };
 
@@ -217,7 +220,7 @@ typedef struct slung_fix {
     float velocity_world_m_s[3];
     float position_deviation_m[2];   /* as the source states it, horizontal and vertical */
     float velocity_deviation_m_s[2]; /* likewise */
-    float age_s;                     /* how old it is when it comes, 0 to 0.3 */
+    float age_s;                     /* how old it is when it comes: 0 to 150 periods, 0.3 s at 500 Hz */
 } slung_fix;
 
 /* Why a call was refused. Set struct_size to sizeof(slung_error) before the call. */
@@ -253,7 +256,7 @@ typedef struct slung_uav {
 /* What a navigation filter has found. Set struct_size to sizeof(slung_navigated) before the call. */
 typedef struct slung_navigated {
     uint32_t struct_size;
-    uint32_t blind;  /* 1 while the IMU has been silent for more than 50 periods */
+    uint32_t blind;  /* 1 while the IMU has been silent for more than 50 periods, 0.1 s at 500 Hz */
     uint32_t resets; /* how often the filter has started anew from a fix: uav has jumped when this changes */
     float fix_age_s; /* since the last fix that was taken */
     float position_deviation_m; /* standard deviation, horizontal, both axes together */
@@ -261,8 +264,8 @@ typedef struct slung_navigated {
     float tilt_deviation_rad;
     float gyro_bias_body_rad_s[3];
     float accelerometer_bias_body_m_s2[3];
-    float specific_force_body_m_s2[3]; /* less its bias: for slung_estimator_step and slung_step_measured, with uav */
-    slung_uav uav;
+    float specific_force_body_m_s2[3]; /* less its bias: for slung_estimator_step, with uav, and slung_step_measured */
+    slung_uav uav;                     /* for slung_estimator_step */
 } slung_navigated;
 
 /* The state that the law is stepped on. */
@@ -275,7 +278,11 @@ typedef struct slung_state {
     float body_rate_frd_rad_s[3];
 } slung_state;
 
-/* What an estimator has found. Set struct_size to sizeof(slung_estimate) before the call. */
+/* What an estimator has found. Set struct_size to sizeof(slung_estimate) before the call.
+ * The state goes into a step while validity is SLUNG_VALID, and NULL goes there otherwise: on a slack cable there is no rod, and
+ * hold and landing fly the UAV alone. Beside the state goes this UAV, not navigation's: where navigation jumps by 5 cm to 2 m, both
+ * glide to the new place within some seconds, while the UAV by navigation is there at once, where no cable reaches from it to the
+ * load. */
 typedef struct slung_estimate {
     uint32_t struct_size;
     uint32_t validity; /* enum slung_validity */
@@ -283,7 +290,8 @@ typedef struct slung_estimate {
     float tension_n;
     float rod_deviation_rad; /* standard deviation of the rod's direction, both axes together */
     float rate_deviation_1_s;
-    slung_state state; /* for slung_step */
+    slung_state state; /* for slung_step_measured, or slung_step */
+    slung_uav uav;     /* likewise: the UAV of this step, in its axes; not a number where it was NULL, and a step takes that for NULL */
 } slung_estimate;
 
 /* Thrust along -b3, and torque. */
@@ -366,7 +374,7 @@ int32_t slung_take_over(slung_controller *controller, const slung_state *state, 
 /* Starts on the path from a stated zeta (0 is hover): mode follow, without an approach. */
 int32_t slung_start(slung_controller *controller, const slung_state *state, const float zeta[4]);
 /* One control period (CTL_PERIOD). state may be NULL: no state this period. request is an enum slung_request; an unknown one is
- * refused, and the last one stands. The output is written either way. */
+ * refused, but the period is flown on the last one, and the output is written. Whatever else is refused, nothing is flown. */
 int32_t slung_step(slung_controller *controller, const slung_state *state, uint32_t request, slung_output *output);
 /* The same with what the UAV's own navigation knows, in the axes of frames, and its accelerometer's specific force in its body axes;
  * any of them may be NULL. Hold and landing then fly the UAV whatever the cable does, and from idle a vehicle takes off. */
@@ -431,7 +439,8 @@ size_t slung_estimator_bytes(void);
  *     slung_navigation_fix(&navigation, frames, &fix);            when one has come; so with the others
  *     slung_navigation_step(&navigation, frames, body_rate, specific_force, &navigated);
  *     slung_estimator_step(&estimator, frames, &navigated.uav, navigated.specific_force_body_m_s2, thrust_n, &estimate);
- *     slung_step_measured(&controller, &estimate.state, frames, &navigated.uav, navigated.specific_force_body_m_s2, request, &output);
+ *     slung_step_measured(&controller, estimate.validity == SLUNG_VALID ? &estimate.state : NULL, frames, &estimate.uav,
+ *                         navigated.specific_force_body_m_s2, request, &output);
  *
  * Measurements that are refused leave the filter as it was: SLUNG_OUT_OF_RANGE where a number can't be, SLUNG_LATE where one is older
  * than the filter remembers or from the future, SLUNG_OUTLIER where a position is more than ten deviations off. Fifteen outliers in

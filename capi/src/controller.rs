@@ -8,7 +8,7 @@ use rig::{Rig, SetupError};
 use crate::frames::{frames, uav};
 use crate::parameters::Stored;
 use crate::path::{self, FlownPath};
-use crate::pointer::{Sized32, exclusive, optional, shared, write_sized};
+use crate::pointer::{Sized32, Target, exclusive, optional, shared, write_sized};
 use crate::route::StoredRoute;
 use crate::status::{Status, code, setup, tell};
 use crate::text::{fault_code, margin_code, mode_code};
@@ -171,8 +171,8 @@ fn request(number: u32) -> Result<Request, Status> {
     }
 }
 
-/// A control period. The output is written whatever the state and the request are; an unknown
-/// request leaves the last one standing.
+/// A control period. Whatever the state is, the output is written; on an unknown request, which is
+/// refused, the last one is flown on.
 ///
 /// # Safety
 /// As [`slung_take_over`].
@@ -207,15 +207,15 @@ pub unsafe extern "C" fn slung_step_measured(
         // SAFETY: the caller's promise.
         let instance = unsafe { exclusive(controller)? };
         instance.rig()?;
-        let known = request(wanted).map(|wanted| instance.request = wanted);
-        // SAFETY: the caller's promise.
-        let state = unsafe { optional(state)? }.map(State::from);
         let frames = frames(number)?;
         // SAFETY: the caller's promise.
-        let (uav, force) = unsafe { (optional(reported)?, optional(specific_force_body_m_s2)?) };
-        let body_rate = fly(instance, state.as_ref(), frames, uav, force);
-        // SAFETY: the caller's promise.
-        unsafe { answer(&instance.rig, body_rate, output)? };
+        let (target, state, uav, force) = unsafe {
+            let target = Target::at(output, SlungOutput::SIZE)?;
+            (target, optional(state)?, optional(reported)?, optional(specific_force_body_m_s2)?)
+        };
+        let known = request(wanted).map(|wanted| instance.request = wanted);
+        let body_rate = fly(instance, state, frames, uav, force);
+        answer(&instance.rig, body_rate, target);
         known
     };
     code(step())
@@ -226,29 +226,27 @@ pub unsafe extern "C" fn slung_step_measured(
 #[inline(never)]
 fn fly(
     instance: &mut Instance,
-    state: Option<&State<f32>>,
+    state: Option<&SlungState>,
     frames: Frames,
     reported: Option<&SlungUav>,
     force: Option<&[f32; 3]>,
 ) -> Option<Vector3<f32>> {
+    let state = state.map(State::from);
     let uav = reported.map(|reported| uav(frames, reported));
     let specific_force = force.map(|force| frames.body(&Vector3::from(*force)));
-    let measured = Measured { state, uav: uav.as_ref(), specific_force };
+    let measured = Measured { state: state.as_ref(), uav: uav.as_ref(), specific_force };
     instance.rig.step(measured, instance.request, 0.0);
     measured.body_rate()
 }
 
 /// Writes the last step's answer.
-///
-/// # Safety
-/// As [`write_sized`].
 #[inline(never)]
-unsafe fn answer(rig: &Controller, body_rate: Option<Vector3<f32>>, target: *mut SlungOutput) -> Result<(), Status> {
+fn answer(rig: &Controller, body_rate: Option<Vector3<f32>>, target: Target<SlungOutput>) {
     let output = rig.output();
     let Command { thrust, torque } = output.command;
     let setpoint = rig.rate_setpoint(body_rate);
     let [thrust_normalized, roll, pitch, yaw] = rig.actuators().shares(&output.command);
-    let told = SlungOutput {
+    target.write(&SlungOutput {
         struct_size: SlungOutput::SIZE,
         mode: mode_code(output.mode),
         fault: output.fault.map_or(0, fault_code),
@@ -261,9 +259,7 @@ unsafe fn answer(rig: &Controller, body_rate: Option<Vector3<f32>>, target: *mut
         thrust_normalized,
         torque_normalized_frd: [roll, pitch, yaw],
         rotor: rig.duties(),
-    };
-    // SAFETY: the caller's promise.
-    unsafe { write_sized(target, &told, SlungOutput::SIZE) }
+    });
 }
 
 /// Flies the path at another factor of its speed, smoothly: 0 rests anywhere, less goes back.

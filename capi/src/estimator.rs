@@ -6,9 +6,9 @@ use controller::{OutOfRange, Uav, Vector3};
 use estimator::{Cable, Drag, Estimate, LoadMeasurement, Motion, Payload, PayloadParams, Validity};
 use rig::parameter;
 
-use crate::frames::{frames, uav};
+use crate::frames::{NO_UAV, frames, uav};
 use crate::parameters::Stored;
-use crate::pointer::{Sized32, exclusive, optional, shared, write_sized};
+use crate::pointer::{Sized32, Target, exclusive, optional, shared};
 use crate::status::{Status, code, tell};
 use crate::types::{SlungError, SlungEstimate, SlungMounting, SlungUav};
 
@@ -114,14 +114,25 @@ pub unsafe extern "C" fn slung_estimator_step(
         let filter = unsafe { exclusive(estimator)? }.filter()?;
         let frames = frames(number)?;
         // SAFETY: the caller's promise.
-        let (reported, force) = unsafe { (optional(reported)?, optional(specific_force_body_m_s2)?) };
+        let (target, reported, force) = unsafe {
+            let target = Target::at(estimate, SlungEstimate::FIRST)?;
+            (target, optional(reported)?, optional(specific_force_body_m_s2)?)
+        };
         let motion = reported.zip(force).map(|(reported, force)| {
             let Uav { position, velocity, attitude, body_rate } = uav(frames, reported);
             Motion { position, velocity, attitude, body_rate, specific_force: frames.body(&Vector3::from(*force)) }
         });
-        let Estimate { state, tension, cable, health, .. } =
-            filter.step(motion.as_ref(), Some(thrust_n).filter(|thrust| thrust.is_finite()));
-        let found = SlungEstimate {
+        let estimate = filter.step(motion.as_ref(), Some(thrust_n).filter(|thrust| thrust.is_finite()));
+        let beside = reported.map_or(NO_UAV, |reported| {
+            let Uav { position, velocity, .. } = estimate.beside(&uav(frames, reported));
+            SlungUav {
+                position_world_m: frames.inertial(&position).into(),
+                velocity_world_m_s: frames.inertial(&velocity).into(),
+                ..*reported
+            }
+        });
+        let Estimate { state, tension, cable, health, .. } = estimate;
+        target.write(&SlungEstimate {
             struct_size: SlungEstimate::SIZE,
             validity: validity_code(health.validity),
             taut: u32::from(cable == Cable::Taut),
@@ -129,9 +140,9 @@ pub unsafe extern "C" fn slung_estimator_step(
             rod_deviation_rad: health.rod_deviation,
             rate_deviation_1_s: health.rate_deviation,
             state: (&state).into(),
-        };
-        // SAFETY: the caller's promise.
-        unsafe { write_sized(estimate, &found, SlungEstimate::SIZE) }
+            uav: beside,
+        });
+        Ok(())
     };
     code(step())
 }

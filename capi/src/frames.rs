@@ -68,6 +68,14 @@ pub fn reported(frames: Frames, motion: &Motion<f32>) -> SlungUav {
     }
 }
 
+/// A UAV that was not reported: a step takes it for none.
+pub const NO_UAV: SlungUav = SlungUav {
+    position_world_m: [f32::NAN; 3],
+    velocity_world_m_s: [f32::NAN; 3],
+    quaternion_body_to_world: [f32::NAN; 4],
+    body_rate_rad_s: [f32::NAN; 3],
+};
+
 /// The UAV in the library's own axes.
 pub fn uav(frames: Frames, reported: &SlungUav) -> Uav<f32> {
     Uav {

@@ -8,7 +8,7 @@ use rig::parameter;
 
 use crate::frames::{frames, quaternion, reported, rotation, uav};
 use crate::parameters::Stored;
-use crate::pointer::{Sized32, exclusive, optional, read_sized, shared, write_sized};
+use crate::pointer::{Sized32, Target, exclusive, optional, read_sized, shared, write_sized};
 use crate::status::{Status, code, tell};
 use crate::types::{SlungError, SlungFix, SlungNavigated, SlungNavigationSettings, SlungUav};
 
@@ -329,14 +329,17 @@ pub unsafe extern "C" fn slung_navigation_step(
         let filter = unsafe { exclusive(navigation)? }.filter()?;
         let frames = frames(number)?;
         // SAFETY: the caller's promise.
-        let (rate, force) = unsafe { (optional(body_rate_rad_s)?, optional(specific_force_body_m_s2)?) };
+        let (target, rate, force) = unsafe {
+            let target = Target::at(navigated, SlungNavigated::SIZE)?;
+            (target, optional(body_rate_rad_s)?, optional(specific_force_body_m_s2)?)
+        };
         let in_body = |v: &[f32; 3]| frames.body(&Vector3::from(*v));
         let imu =
             rate.zip(force).map(|(rate, force)| Imu { body_rate: in_body(rate), specific_force: in_body(force) });
         let motion = filter.step(imu.as_ref());
         let health = filter.health();
         let (gyro, accelerometer) = filter.biases();
-        let found = SlungNavigated {
+        target.write(&SlungNavigated {
             struct_size: SlungNavigated::SIZE,
             blind: u32::from(health.is_blind),
             resets: u32::from(health.resets),
@@ -348,9 +351,8 @@ pub unsafe extern "C" fn slung_navigation_step(
             accelerometer_bias_body_m_s2: frames.body(&accelerometer).into(),
             specific_force_body_m_s2: frames.body(&motion.specific_force).into(),
             uav: reported(frames, &motion),
-        };
-        // SAFETY: the caller's promise.
-        unsafe { write_sized(navigated, &found, SlungNavigated::SIZE) }
+        });
+        Ok(())
     };
     code(step())
 }

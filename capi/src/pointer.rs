@@ -65,35 +65,58 @@ pub unsafe trait Sized32: Copy {
     const SIZE: u32 = size_of::<Self>() as u32;
 }
 
-/// Writes `value` where a caller has room for a structure that begins with its size: as much of it
-/// as the caller's header knows of.
+/// Where a caller has room for a structure that begins with its size. Taken before anything is done
+/// that an answer belongs to, so that a call without room for its answer does nothing.
+pub struct Target<T> {
+    pointer: *mut T,
+    room: u32,
+}
+
+impl<T: Sized32> Target<T> {
+    /// The room at `pointer`.
+    ///
+    /// # Errors
+    /// [`Status::NullPointer`], [`Status::Misaligned`], and [`Status::StructSize`] where the
+    /// caller's size is smaller than the first version's, `least`.
+    ///
+    /// # Safety
+    /// If it is neither null nor misaligned, the first four bytes hold how many bytes may be written
+    /// there until the target is.
+    pub unsafe fn at(pointer: *mut T, least: u32) -> Result<Self, Status> {
+        if pointer.is_null() {
+            return Err(Status::NullPointer);
+        }
+        if !pointer.is_aligned() {
+            return Err(Status::Misaligned);
+        }
+        // SAFETY: the caller's promise, and the trait's: the first field is a u32.
+        let room = unsafe { pointer.cast::<u32>().read() };
+        if room < least { Err(Status::StructSize) } else { Ok(Self { pointer, room }) }
+    }
+
+    /// Writes as much of `value` as the caller's header knows of.
+    pub fn write(self, value: &T) {
+        let Self { pointer, room } = self;
+        let bytes = room.min(T::SIZE) as usize;
+        // SAFETY: `room` bytes may be written there by what `at` was promised, and `bytes` is at
+        // most that and at most the value's size.
+        unsafe {
+            core::ptr::copy_nonoverlapping(core::ptr::from_ref(value).cast::<u8>(), pointer.cast::<u8>(), bytes);
+            pointer.cast::<u32>().write(room);
+        }
+    }
+}
+
+/// Writes `value` where a caller has room for it, where nothing else is done.
 ///
 /// # Errors
-/// [`Status::NullPointer`], [`Status::Misaligned`], and [`Status::StructSize`] where the caller's
-/// size is smaller than the first version's, `least`.
+/// As [`Target::at`].
 ///
 /// # Safety
-/// If it is neither null nor misaligned, the first four bytes hold how many bytes may be written
-/// there.
+/// As [`Target::at`].
 pub unsafe fn write_sized<T: Sized32>(target: *mut T, value: &T, least: u32) -> Result<(), Status> {
-    if target.is_null() {
-        return Err(Status::NullPointer);
-    }
-    if !target.is_aligned() {
-        return Err(Status::Misaligned);
-    }
-    // SAFETY: the caller's promise, and the trait's: the first field is a u32.
-    let room = unsafe { target.cast::<u32>().read() };
-    if room < least {
-        return Err(Status::StructSize);
-    }
-    let bytes = room.min(T::SIZE) as usize;
-    // SAFETY: `room` bytes may be written there, and `bytes` is at most that and at most the
-    // value's size.
-    unsafe {
-        core::ptr::copy_nonoverlapping(core::ptr::from_ref(value).cast::<u8>(), target.cast::<u8>(), bytes);
-        target.cast::<u32>().write(room);
-    }
+    // SAFETY: the caller's promise.
+    unsafe { Target::at(target, least)? }.write(value);
     Ok(())
 }
 

@@ -252,10 +252,17 @@ pub struct SlungEstimate {
     pub rate_deviation_1_s: f32,
     /// The law's state.
     pub state: SlungState,
+    /// The step's UAV as it goes beside it, in the step's axes; not a number where none was given.
+    pub uav: SlungUav,
 }
 
 // SAFETY: as above.
 unsafe impl Sized32 for SlungEstimate {}
+
+impl SlungEstimate {
+    /// Bytes of the first version, which ended with the state.
+    pub const FIRST: u32 = core::mem::offset_of!(Self, uav) as u32;
+}
 
 /// What a navigation filter is told: `slung_navigation_settings`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -326,7 +333,7 @@ pub struct SlungFix {
 pub struct SlungNavigated {
     /// Bytes of this structure as the caller knows it.
     pub struct_size: u32,
-    /// 1 while the IMU has been silent for more than 0.1 s.
+    /// 1 while the IMU has been silent for more than 50 periods.
     pub blind: u32,
     /// How often the filter has started anew from a fix.
     pub resets: u32,

@@ -34,7 +34,7 @@ static void about(slung_uav *uav, float payload[3], float velocity[3]) {
 }
 
 /* What the header promises, bytes. */
-enum { STEP_STACK = 2048, CREATE_STACK = 18432 };
+enum { STEP_STACK = 2252, CREATE_STACK = 18432 };
 
 /* A square with a rounded corner, a smooth point and a stop. */
 static int build(slung_route *route) {

@@ -106,6 +106,7 @@ int main(void) {
     FIELD(slung_estimate, rod_deviation_rad);
     FIELD(slung_estimate, rate_deviation_1_s);
     FIELD(slung_estimate, state);
+    FIELD(slung_estimate, uav);
     SIZE(slung_navigation_settings);
     FIELD(slung_navigation_settings, struct_size);
     FIELD(slung_navigation_settings, imu_frd_m);

@@ -33,7 +33,7 @@ fn layout() -> String {
         "slung_waypoint" SlungWaypoint { point_ned_m corner_m speed_m_s yaw_rad stop_s }
         "slung_pace" SlungPace { acceleration_m_s2 stop_rate_1_s rise_s }
         "slung_mounting" SlungMounting { hook_frd_m imu_frd_m uav_drag payload_drag }
-        "slung_estimate" SlungEstimate { struct_size validity taut tension_n rod_deviation_rad rate_deviation_1_s state }
+        "slung_estimate" SlungEstimate { struct_size validity taut tension_n rod_deviation_rad rate_deviation_1_s state uav }
         "slung_navigation_settings" SlungNavigationSettings { struct_size imu_frd_m antenna_frd_m declination_rad accelerometer_m_s2_rthz gyro_rad_s_rthz accelerometer_walk_m_s2_rts gyro_walk_rad_s_rts fix_position_m fix_velocity_m_s heading_rad barometer_m barometer_time_s start_position_m start_velocity_m_s start_tilt_rad start_heading_rad start_gyro_rad_s start_accelerometer_m_s2 }
         "slung_fix" SlungFix { position_world_m velocity_world_m_s position_deviation_m velocity_deviation_m_s age_s }
         "slung_navigated" SlungNavigated { struct_size blind resets fix_age_s position_deviation_m velocity_deviation_m_s tilt_deviation_rad gyro_bias_body_rad_s accelerometer_bias_body_m_s2 specific_force_body_m_s2 uav }

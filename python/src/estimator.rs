@@ -24,7 +24,7 @@ fn period(parameters: &Parameters) -> f32 {
 fn not_used(field: &str, reason: Refused) -> PyErr {
     let why = match reason {
         Refused::NotUsable => "not a number, or outside its possible range",
-        Refused::Age => "older than 0.3 s, or from the future",
+        Refused::Age => "older than 150 periods (0.3 s at 500 Hz), or from the future",
         Refused::Outlier => "more than ten deviations off",
     };
     refused(format!("{field}: {why}"), field, None)
@@ -40,7 +40,11 @@ pub struct PayloadFilter(estimator::Payload<f32>);
 
 /// What the payload filter has found.
 #[pyclass(frozen, module = "slung")]
-pub struct Estimate(Found<f32>);
+pub struct Estimate {
+    found: Found<f32>,
+    /// The step's UAV as it goes beside the state.
+    uav: Uav,
+}
 
 #[pymethods]
 impl Navigation {
@@ -151,12 +155,8 @@ fn motion(uav: &Uav, specific_force: Vector3<f32>) -> Motion<f32> {
 }
 
 fn uav(motion: &Motion<f32>) -> Uav {
-    Uav(controller::Uav {
-        position: motion.position.map(f64::from),
-        velocity: motion.velocity.map(f64::from),
-        attitude: motion.attitude.map(f64::from),
-        body_rate: motion.body_rate.map(f64::from),
-    })
+    let Motion { position, velocity, attitude, body_rate, .. } = *motion;
+    Uav(controller::Uav { position, velocity, attitude, body_rate }.cast())
 }
 
 #[pymethods]
@@ -190,7 +190,8 @@ impl PayloadFilter {
     /// A period: how the UAV moves, its mean specific force, and the thrust it was given.
     fn step(&mut self, uav: &Uav, specific_force: Vector, thrust: Option<f64>) -> Estimate {
         let motion = motion(uav, single(specific_force));
-        Estimate(self.0.step(Some(&motion), thrust.map(|thrust| thrust as f32)))
+        let found = self.0.step(Some(&motion), thrust.map(|thrust| thrust as f32));
+        Estimate { uav: Uav(found.beside(&uav.cast()).cast()), found }
     }
 
     #[pyo3(signature = (direction, deviation, age = 0.0))]
@@ -216,19 +217,23 @@ impl PayloadFilter {
 impl Estimate {
     #[getter]
     fn state(&self) -> State {
-        State(self.0.state.cast())
+        State(self.found.state.cast())
+    }
+    #[getter]
+    fn uav(&self) -> Uav {
+        self.uav
     }
     #[getter]
     fn tension(&self) -> f64 {
-        self.0.tension.into()
+        self.found.tension.into()
     }
     #[getter]
     fn is_taut(&self) -> bool {
-        self.0.cable == estimator::Cable::Taut
+        self.found.cable == estimator::Cable::Taut
     }
     #[getter]
     fn validity(&self) -> &'static str {
-        match self.0.health.validity {
+        match self.found.health.validity {
             Validity::Valid => "valid",
             Validity::Converging => "converging",
             Validity::Inconsistent => "inconsistent",
@@ -238,6 +243,6 @@ impl Estimate {
     }
     #[getter]
     fn rod_deviation(&self) -> f64 {
-        self.0.health.rod_deviation.into()
+        self.found.health.rod_deviation.into()
     }
 }

@@ -95,13 +95,7 @@ pub struct Uav(pub controller::Uav<f64>);
 impl Uav {
     /// In another scalar.
     pub fn cast<T: Real>(&self) -> controller::Uav<T> {
-        let vector = |v: &Vector3<f64>| v.map(T::lit);
-        controller::Uav {
-            position: vector(&self.0.position),
-            velocity: vector(&self.0.velocity),
-            attitude: self.0.attitude.map(T::lit),
-            body_rate: vector(&self.0.body_rate),
-        }
+        self.0.cast()
     }
 }
 
