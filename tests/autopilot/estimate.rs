@@ -410,6 +410,98 @@ fn n_has_its_origin_at_home_and_without_one_at_the_first_fix() {
 }
 
 #[test]
+fn home_is_at_the_first_fix_until_one_is_told() {
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.settings_mut().unwrap().set_by_name("EST_LOAD", 2.0).unwrap();
+    let mut station = Station::new(autopilot);
+    let level = |station: &mut Station, aside: &MavMessage| {
+        for _ in 0..300 {
+            station.say(&MavMessage::HIGHRES_IMU(HIGHRES_IMU_DATA {
+                zacc: -9.81,
+                xmag: 0.4,
+                zmag: 0.8,
+                fields_updated: 0b1_1111_1111,
+                ..HIGHRES_IMU_DATA::DEFAULT
+            }));
+            station.say(aside);
+            station.autopilot.tick();
+        }
+    };
+    let place = |station: &mut Station| {
+        station.time_ns += 1_000_000_000;
+        station.messages().into_iter().find_map(|message| match message {
+            MavMessage::GLOBAL_POSITION_INT(global) => {
+                Some(([global.lat, global.lon, global.alt], global.relative_alt))
+            }
+            _ => None,
+        })
+    };
+    let MavMessage::GPS_INPUT(fix) = fix_aside() else { panic!() };
+    let at = [fix.lat, fix.lon, (fix.alt * 1e3).round() as i32];
+    let home = |messages: Vec<MavMessage>| {
+        let homes = messages.into_iter().filter_map(|message| match message {
+            MavMessage::HOME_POSITION(home) => Some([home.latitude, home.longitude, home.altitude]),
+            _ => None,
+        });
+        homes.collect::<Vec<_>>()
+    };
+    station.say(&fix_aside());
+    // A float of 437.1 m has steps of 0.03 mm.
+    assert_eq!(home(station.messages()), [at]);
+    assert_eq!(home(station.messages()), [[0; 3]; 0]);
+    level(&mut station, &fix_aside());
+    let (found, above) = place(&mut station).expect("the UAV is somewhere");
+    // The filter is at rest where its fixes are, to a step of 1.1 cm.
+    assert!(found.iter().zip(at).all(|(found, at)| found.abs_diff(at) <= 1), "{found:?} {at:?}");
+    assert!(above.abs() <= 1, "{above}");
+
+    // A height above home, 10 m east, as COMMAND_INT has it; and in no frame that it knows.
+    let set = |station: &mut Station, param1: f32, frame: MavFrame, [x, y]: [i32; 2], z: f32| {
+        let command = MavCmd::MAV_CMD_DO_SET_HOME as u16;
+        let frame = frame as u8;
+        let request = COMMAND_INT_DATA { command, param1, frame, x, y, z, ..COMMAND_INT_DATA::DEFAULT };
+        let replies = station.say(&MavMessage::COMMAND_INT(request));
+        let result = replies.iter().find_map(|reply| match reply {
+            MavMessage::COMMAND_ACK(ack) => Some(ack.result),
+            _ => None,
+        });
+        (result.expect("it is acknowledged"), home(replies))
+    };
+    let aside = [at[0] + 1000, at[1] + 1000];
+    let denied = (MavResult::MAV_RESULT_DENIED as u8, vec![]);
+    let accepted = |home: [i32; 3]| (MavResult::MAV_RESULT_ACCEPTED as u8, vec![home]);
+    assert_eq!(set(&mut station, 0.0, MavFrame::MAV_FRAME_LOCAL_NED, aside, 0.0), denied);
+    assert_eq!(set(&mut station, 2.0, MavFrame::MAV_FRAME_GLOBAL_INT, aside, 0.0), denied);
+    assert_eq!(set(&mut station, 0.0, MavFrame::MAV_FRAME_GLOBAL_INT, aside, f32::NAN), denied);
+    let told = [aside[0], aside[1], 400_000];
+    assert_eq!(set(&mut station, 0.0, MavFrame::MAV_FRAME_GLOBAL_INT, aside, 400.0), accepted(told));
+    // Told, it is not found again.
+    level(&mut station, &fix_aside());
+    assert_eq!(home(station.messages()), [[0; 3]; 0]);
+    let (found, above) = place(&mut station).expect("the UAV is somewhere");
+    assert!(found.iter().zip(at).all(|(found, at)| found.abs_diff(at) <= 2), "{found:?} {at:?}");
+    assert!((above - (at[2] - 400_000)).abs() <= 2, "{above}");
+    let higher = [aside[0], aside[1], 402_500];
+    assert_eq!(set(&mut station, 0.0, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, aside, 2.5), accepted(higher));
+    // Here; what has to be found again first is nowhere.
+    level(&mut station, &fix_aside());
+    let (result, homes) = set(&mut station, 1.0, MavFrame::MAV_FRAME_GLOBAL, [0; 2], 0.0);
+    assert_eq!(result, MavResult::MAV_RESULT_ACCEPTED as u8);
+    assert!(homes[0].iter().zip(at).all(|(home, at)| home.abs_diff(at) <= 2), "{homes:?} {at:?}");
+    // Another's navigation has its own origin, and no home but what is told.
+    let mut autopilot = Autopilot::new(Boot::default());
+    autopilot.settings_mut().unwrap().set_by_name("EST_LOAD", 2.0).unwrap();
+    let mut station = Station::new(autopilot);
+    station.say(&fix_aside());
+    assert!(station.autopilot.mission().home().is_some());
+    station.autopilot.settings_mut().unwrap().set_by_name("EST_LOAD", 1.0).unwrap();
+    station.say(&fix_aside());
+    assert_eq!(station.autopilot.mission().home(), None);
+    assert_eq!(set(&mut station, 1.0, MavFrame::MAV_FRAME_GLOBAL, [0; 2], 0.0), denied);
+    assert_eq!(set(&mut station, 0.0, MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT, aside, 0.0), denied);
+}
+
+#[test]
 fn what_a_line_brings_twice_counts_once() {
     let moved = |repeats: usize| {
         let mut field = Field::new(scenario(""), 2.0, 7);

@@ -94,6 +94,7 @@ impl Autopilot {
             if self.drive() == Drive::Flight && apart_s > most {
                 return Err(ArmRefused::Slow(apart_s, most));
             }
+            self.find_home();
             self.mission.lay_fence().map_err(ArmRefused::Mission)?;
             if self.drive() == Drive::Lockstep {
                 // No time goes by without a state: the last may be of another flight.

@@ -6,8 +6,9 @@ use link::Home;
 use rig::parameter;
 
 use super::{Autopilot, Notice};
+use crate::estimate::{Source, params};
 use crate::failsafe::wanted;
-use crate::mission::{Flown, Item, Kind, Mission, Progress};
+use crate::mission::{DEGREES, Flown, Item, Kind, Mission, Progress};
 use crate::settings::{Setting, Settings};
 
 /// How a flight along a mission stands.
@@ -84,12 +85,41 @@ impl Autopilot {
     pub(crate) fn set_home(&mut self, home: Home) -> Result<(), &'static str> {
         if self.mission.home() != Some(&home) {
             let (mission, settings) = self.mission_mut().ok_or("home: not while armed")?;
-            mission.set_home(home, settings);
+            mission.set_home(Some(home), settings);
             self.navigation.instruments_mut().set_home(&home);
             // What it has found is counted from another place.
             self.estimator = None;
         }
+        self.is_home_told = true;
         Ok(())
+    }
+
+    /// Where none was told, home is where navigation of our own counts from, the first fix; there
+    /// is none where another's navigation has its own origin. Returns whether one was found.
+    pub(crate) fn find_home(&mut self) -> bool {
+        let is_own = matches!(params::source(&self.settings), Some(Source::Sensors));
+        let found = self.navigation.instruments_mut().origin().filter(|_| is_own);
+        if self.is_home_told || self.is_armed() || self.mission.home() == found.as_ref() {
+            return false;
+        }
+        self.mission.set_home(found, &self.settings);
+        found.is_some()
+    }
+
+    /// Where on the earth the UAV is, for a home there.
+    ///
+    /// # Errors
+    /// It is not known, or not what N would then be counted from.
+    pub(crate) fn here(&self) -> Result<Home, &'static str> {
+        if !matches!(params::source(&self.settings), Some(Source::Sensors)) {
+            return Err("home: N is counted from another origin");
+        }
+        let (Some(home), Some(uav)) = (self.mission.home(), &self.uav) else {
+            return Err("home: no position now");
+        };
+        let [x, y, z] = uav.position.into();
+        let [latitude, longitude] = home.place([x, y]).map(|steps| f64::from(steps) * DEGREES);
+        Ok(Home { latitude, longitude, altitude: home.altitude - f64::from(z) })
     }
 
     /// Flies the mission, from the ground or from the air.

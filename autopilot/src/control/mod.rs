@@ -46,6 +46,7 @@ pub struct Autopilot {
     /// While armed.
     rig: Option<Rig<f32, Flown>>,
     mission: Mission,
+    is_home_told: bool,
     underway: Underway,
     request: Request,
     /// Newest state that has come in flight and was not used yet.
@@ -108,6 +109,7 @@ impl Autopilot {
             counters: Counters::default(),
             rig: None,
             mission: Mission::none(),
+            is_home_told: false,
             underway: Underway::default(),
             request: Request::Idle,
             inbox: None,

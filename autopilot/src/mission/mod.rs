@@ -201,9 +201,9 @@ impl Mission {
         self.course.lands
     }
 
-    /// Counts from `home` from now on. What can't be laid about it, arming refuses.
-    pub(crate) fn set_home(&mut self, home: Home, settings: &Settings) {
-        self.home = Some(home);
+    /// Counts from `home` from now on. What can't be laid about it, or without one, arming refuses.
+    pub(crate) fn set_home(&mut self, home: Option<Home>, settings: &Settings) {
+        self.home = home;
         let _ = self.lay(settings);
     }
 

@@ -1,6 +1,7 @@
 //! The sensors behind navigation as MAVLink's own messages bring them: IMU, magnetometer and
 //! pressure by HIGHRES_IMU, a satellite receiver by GPS_INPUT or GPS_RAW_INT.
 
+use crate::mission::DEGREES;
 use controller::{Real, Vector3};
 use estimator::Fix;
 use link::Home;
@@ -119,6 +120,13 @@ impl Instruments {
         let [latitude, longitude] = [home.latitude, home.longitude].map(|degrees| libm::round(degrees * 1e7) as i32);
         self.origin = Some(Origin::new(latitude, longitude, home.altitude as f32));
         self.fix = None;
+    }
+
+    /// Where N has its origin: at home, or else at the first fix.
+    pub fn origin(&self) -> Option<Home> {
+        let Origin { latitude, longitude, altitude_m, .. } = self.origin?;
+        let [latitude, longitude] = [latitude, longitude].map(|steps| f64::from(steps) * DEGREES);
+        Some(Home { latitude, longitude, altitude: altitude_m.into() })
     }
 
     /// HIGHRES_IMU. Returns the specific force, if it is new.

@@ -143,9 +143,7 @@ pub(super) fn command_int(request: &COMMAND_INT_DATA, autopilot: &mut Autopilot,
     let command = request.command;
     let result = if command != MavCmd::MAV_CMD_DO_SET_HOME as u16 {
         MavResult::MAV_RESULT_COMMAND_LONG_ONLY
-    } else if request.param1 == 0.0
-        && mission::set_home(([request.x, request.y, (request.z * 1e3) as i32], [0.0; 3]), autopilot, send)
-    {
+    } else if mission::have_home(mission::home_of(request, autopilot), autopilot, send) {
         MavResult::MAV_RESULT_ACCEPTED
     } else {
         MavResult::MAV_RESULT_DENIED

@@ -33,6 +33,8 @@ pub struct Transfer {
     told_ns: u64,
     /// What is kept has changed.
     pub(super) has_changed: bool,
+    /// How many messages have yet to tell a home that was found.
+    untold: usize,
 }
 
 /// An upload under way.
@@ -54,6 +56,7 @@ impl Transfer {
             current: (0, MissionState::None),
             told_ns: 0,
             has_changed: false,
+            untold: 0,
         }
     }
 }
@@ -248,11 +251,23 @@ impl Server {
         send(ack(sender, item.mission_type, result));
     }
 
-    /// What there is to say of a mission, unasked: the next question of an upload, an item that is
+    /// After a fix: home may be found by it.
+    pub(super) fn find_home(&mut self, autopilot: &mut Autopilot) {
+        if autopilot.find_home() {
+            self.transfer.untold = 2;
+        }
+    }
+
+    /// What there is to say of a home that was found, or of a mission, unasked: the next question of an upload, an item that is
     /// reached, another item or state.
     pub(super) fn mission_news(&mut self, time_ns: u64, autopilot: &Autopilot) -> Option<MavMessage> {
         const EVERY_NS: u64 = 1_000_000_000;
         let transfer = &mut self.transfer;
+        if let Some(left) = transfer.untold.checked_sub(1) {
+            transfer.untold = left;
+            let [origin, home] = home_messages(autopilot);
+            return if left > 0 { origin } else { home };
+        }
         if let Some(mut upload) = transfer.upload
             && time_ns.saturating_sub(upload.asked_ns) > PATIENCE_NS
         {
@@ -334,30 +349,54 @@ fn home_in(message: &MavMessage) -> Option<(Place, bool)> {
     })
 }
 
-/// Sets home, and tells it; `false` if it is refused.
-pub(super) fn set_home(
+/// Sets home, and tells it.
+fn set_home(
     ([latitude, longitude, altitude], in_n): Place,
     autopilot: &mut Autopilot,
     send: &mut impl FnMut(MavMessage),
-) -> bool {
+) {
     let home = Home {
         latitude: f64::from(latitude) * DEGREES,
         longitude: f64::from(longitude) * DEGREES,
         altitude: f64::from(altitude) * 1e-3,
     };
-    let is_place = home.latitude.abs() <= 90.0 && home.longitude.abs() <= 180.0;
-    let set = if in_n != [0.0; 3] {
-        Err("home: x, y, z other than 0")
-    } else if !is_place {
-        Err("home: no latitude and longitude")
-    } else {
-        autopilot.set_home(home)
-    };
+    let home = if in_n == [0.0; 3] { Ok(home) } else { Err("home: x, y, z other than 0") };
+    have_home(home, autopilot, send);
+}
+
+/// Sets home, if there is one, and tells it; `false` if it is refused.
+pub(super) fn have_home(
+    home: Result<Home, &'static str>,
+    autopilot: &mut Autopilot,
+    send: &mut impl FnMut(MavMessage),
+) -> bool {
+    let set = home.and_then(|home| {
+        let is_place = home.latitude.abs() <= 90.0 && home.longitude.abs() <= 180.0 && home.altitude.is_finite();
+        if is_place { autopilot.set_home(home) } else { Err("home: no place on the earth") }
+    });
     match set {
         Ok(()) => home_messages(autopilot).into_iter().flatten().for_each(send),
         Err(why) => send(warning(why)),
     }
     set.is_ok()
+}
+
+/// The home of DO_SET_HOME.
+pub(super) fn home_of(request: &COMMAND_INT_DATA, autopilot: &Autopilot) -> Result<Home, &'static str> {
+    use MavFrame as Frame;
+    const GLOBAL: [u8; 2] = [Frame::MAV_FRAME_GLOBAL as u8, Frame::MAV_FRAME_GLOBAL_INT as u8];
+    const RELATIVE: [u8; 2] =
+        [Frame::MAV_FRAME_GLOBAL_RELATIVE_ALT as u8, Frame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8];
+    let above = match (request.param1, autopilot.mission().home()) {
+        (1.0, _) => return autopilot.here(),
+        (0.0, _) if GLOBAL.contains(&request.frame) => 0.0,
+        (0.0, Some(home)) if RELATIVE.contains(&request.frame) => home.altitude,
+        (0.0, None) if RELATIVE.contains(&request.frame) => return Err("home: above home, and there is none"),
+        (0.0, _) => return Err("home: frames GLOBAL and GLOBAL_RELATIVE_ALT"),
+        _ => return Err("home: param1 is 0, or 1 for here"),
+    };
+    let [latitude, longitude] = [request.x, request.y].map(|steps| f64::from(steps) * DEGREES);
+    Ok(Home { latitude, longitude, altitude: above + f64::from(request.z) })
 }
 
 /// GPS_GLOBAL_ORIGIN and HOME_POSITION, if there is a home.

@@ -318,10 +318,12 @@ impl Server {
             MavMessage::GPS_INPUT(fix) => {
                 self.receiver.hear_input(&fix, time_ns);
                 autopilot.navigation_mut().instruments_mut().hear_gps_input(&fix);
+                self.find_home(autopilot);
             }
             MavMessage::GPS_RAW_INT(fix) => {
                 self.receiver.hear_raw(&fix, time_ns);
                 autopilot.navigation_mut().instruments_mut().hear_gps_raw(&fix);
+                self.find_home(autopilot);
             }
             MavMessage::HEARTBEAT(HEARTBEAT_DATA { mavtype: STATION, .. }) => autopilot.hear_station(),
             MavMessage::BATTERY_STATUS(battery) if battery.battery_remaining >= 0 => {
