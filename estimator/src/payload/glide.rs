@@ -14,8 +14,8 @@
 use model::{Real, Vector3};
 
 /// Jumps of this size glide, m and m/s: below, it is the filter's daily work; above, it is another
-/// place, which the law has to join anew.
-const LEAST: f64 = 0.05;
+/// place, which the law has to join anew. Where one of the two glides, so does the other.
+const LEAST: [f64; 2] = [0.05, 0.025];
 const MOST: f64 = 2.0;
 /// Least τ, s: about that of the slowest of usual poles.
 const TIME: f64 = 0.7;
@@ -41,22 +41,23 @@ impl<T: Real> Glide<T> {
     /// move them by.
     #[inline(always)]
     pub(super) fn take(&mut self, position: &Vector3<T>, velocity: &Vector3<T>) {
-        let mut has_jumped = false;
-        for (rest, jump) in [(&mut self.rest, position), (&mut self.rate, velocity)] {
-            let square = jump.dot(jump);
-            if square > T::lit(LEAST * LEAST) && square < T::lit(MOST * MOST) {
-                *rest -= jump;
-                has_jumped = true;
+        let squares = [position.dot(position), velocity.dot(velocity)];
+        let is_small = squares.into_iter().zip(LEAST).all(|(square, least)| square <= T::lit(least * least));
+        if !is_small {
+            for ((left, jump), square) in
+                [(&mut self.rest, position), (&mut self.rate, velocity)].into_iter().zip(squares)
+            {
+                if square < T::lit(MOST * MOST) {
+                    *left -= jump;
+                }
             }
-        }
-        if has_jumped {
             let (rest, rate) = (self.rest.dot(&self.rest), self.rate.dot(&self.rate));
             // Jump upon jump: there is no place to glide from.
             if rest.max(rate) >= T::lit(MOST * MOST) {
                 *self = Self::none();
                 return;
             }
-            let square = rest.max(T::lit(LEAST * LEAST));
+            let square = rest.max(T::lit(LEAST[0] * LEAST[0]));
             self.per_time = (T::lit(ACCELERATION) / square.sqrt()).sqrt().min(T::lit(1.0 / TIME));
         }
     }
@@ -108,11 +109,22 @@ mod tests {
         }
     }
 
+    /// A fix after an outage corrects both: to a law with poles to 15/s even 5 cm/s at once are a blow
+    /// at which its torque saturates.
+    #[test]
+    fn a_small_velocity_glides_with_a_position_that_jumps() {
+        for (place, speed) in [(0.1, 0.02), (0.01, 0.03)] {
+            let mut glide = Glide::none();
+            glide.take(&Vector3::new(place, 0.0, 0.0), &Vector3::new(0.0, speed, 0.0));
+            assert_eq!((glide.rest.x, glide.rate.y), (-place, -speed));
+        }
+    }
+
     #[test]
     fn small_corrections_and_other_places_go_through() {
-        for size in [0.04, 2.5, f64::NAN] {
+        for (place, speed) in [(0.04, 0.02), (2.5, 2.5), (f64::NAN, f64::NAN)] {
             let mut glide = Glide::none();
-            glide.take(&Vector3::new(size, 0.0, 0.0), &Vector3::new(0.0, size, 0.0));
+            glide.take(&Vector3::new(place, 0.0, 0.0), &Vector3::new(0.0, speed, 0.0));
             assert_eq!((glide.rest, glide.rate), (Vector3::zeros(), Vector3::zeros()));
         }
     }

@@ -74,7 +74,7 @@ const UNREAD: f64 = 2.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate<T> {
     /// The law's state: payload and rod, with the line from the UAV's centre of mass to the load
-    /// for the rod. Where navigation jumps by 5 cm to 2 m, or 5 cm/s to 2 m/s, it glides to the new
+    /// for the rod. Where navigation jumps by 5 cm to 2 m, or 2.5 cm/s to 2 m/s, it glides to the new
     /// place within some seconds; beyond, it jumps along.
     pub state: State<T>,
     /// What navigation's last jump has left in `state`'s position, m, and velocity, m/s.
