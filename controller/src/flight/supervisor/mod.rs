@@ -261,22 +261,28 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.is_by_law = false;
         self.motion.pass();
         let uav = measured.uav.filter(|uav| uav.check().is_ok());
-        let carried = uav.and_then(|uav| self.see_uav(uav, measured.specific_force.as_ref()));
-        let uav = carried.as_ref().or(uav);
+        // Where it is not as measured.
+        let mut found = uav.and_then(|uav| self.see_uav(uav, measured.specific_force.as_ref()));
         let fault = match measured.state {
             None => Fault::NoState,
             Some(state) => match state.check().and_then(|()| self.check_rates(state)) {
                 Err(channel) => Fault::State(channel),
                 Ok(()) => {
-                    let doubt = self.doubt(state, uav);
+                    let doubt = self.doubt(state, found.as_ref().or(uav));
                     if doubt != Some(Doubt::Load) {
-                        let of_load = doubt.and(uav).map(|uav| self.of_load(state, uav));
-                        return self.with_load(state, of_load.as_ref().or(uav), measured.specific_force);
+                        if doubt.is_some() {
+                            let velocity = found.as_ref().or(uav).map(|uav| uav.velocity);
+                            found = Some(self.of_load(state, velocity));
+                        } else if uav.is_none() && self.motion.has_uav() {
+                            found = self.lost_uav(state, measured.specific_force.as_ref());
+                        }
+                        return self.with_load(state, found.as_ref().or(uav), measured.specific_force);
                     }
                     Fault::Contradiction
                 }
             },
         };
+        let uav = found.as_ref().or(uav);
         self.blind += self.sampler.period();
         if let Some(output) = self.carried(fault, uav, measured.specific_force) {
             return output;

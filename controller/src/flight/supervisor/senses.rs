@@ -47,7 +47,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// Where the UAV has come to since its navigation was lost, if a slack cable does not tell.
     #[cold]
     #[inline(never)]
-    fn lost_uav(&mut self, state: &State<T>, specific: Option<&Vector3<T>>) -> Option<Uav<T>> {
+    pub(super) fn lost_uav(&mut self, state: &State<T>, specific: Option<&Vector3<T>>) -> Option<Uav<T>> {
         let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault);
         if !is_flying || self.is_hung() || self.landing.is_by_rod() {
             return None;
@@ -79,10 +79,10 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// position that stands still, since that is true of a slack cable, too.
     #[cold]
     #[inline(never)]
-    pub(super) fn of_load(&self, state: &State<T>, uav: &Uav<T>) -> Uav<T> {
+    pub(super) fn of_load(&self, state: &State<T>, velocity: Option<Vector3<T>>) -> Uav<T> {
         let of_load = Uav::of(state, self.sampler.vehicle());
-        match self.motion.standing() {
-            Some(Standing::Position) => Uav { velocity: uav.velocity, ..of_load },
+        match (self.motion.standing(), velocity) {
+            (Some(Standing::Position), Some(velocity)) => Uav { velocity, ..of_load },
             _ => of_load,
         }
     }
@@ -190,7 +190,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 uav = measured.uav.map(|uav| Uav { attitude, body_rate, ..*uav }).filter(|uav| uav.check().is_ok());
                 match self.doubt(&state, uav.as_ref()) {
                     None => {}
-                    Some(Doubt::Uav) => uav = uav.map(|uav| self.of_load(&state, &uav)),
+                    Some(Doubt::Uav) => uav = Some(self.of_load(&state, uav.map(|uav| uav.velocity))),
                     Some(Doubt::Load) => return None,
                 }
             }
@@ -246,9 +246,6 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         specific: Option<Vector3<T>>,
     ) -> Output<T> {
         let length = self.sampler.vehicle().params().rod_length;
-        let is_lost = uav.is_none() && self.motion.has_uav();
-        let lost = if is_lost { self.lost_uav(state, specific.as_ref()) } else { None };
-        let uav = uav.or(lost.as_ref());
         let velocity = match uav {
             Some(uav) => uav.velocity,
             None => state.velocity - state.rod_rate * length,
