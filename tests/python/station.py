@@ -26,6 +26,8 @@ MISSION = [(0.0, 0.0, 6.0), (15.0, 0.0, 6.0), (15.0, 10.0, 7.0), (0.0, 10.0, 7.0
 ROD_M = 2.0
 # What wind, gusts and the sensors' noise of the scenario leave a route, the corner's blend beside it.
 NEAR_M = 0.5
+# The first item is not flown to: its leg is joined from hold, with as much of a swing as is calm, 0.3 1/s of the rod, which takes some 4 s to brake.
+JOINED_M = 0.3 * ROD_M * 4.0 / 2.0
 
 
 class Station:
@@ -186,10 +188,11 @@ def fly(station):
         reached.append(station.receive(["MISSION_ITEM_REACHED"], 60.0).seq)
     assert reached == list(range(len(MISSION))), reached
     # The UAV flies above the load's way, near each of its corners.
-    for north, east, up in MISSION:
+    for item, (north, east, up) in enumerate(MISSION):
         nearest = min(math.dist(place(message), (north, east, up + ROD_M)) for _, message in station.places)
         # By half a corner's blend, at the most.
-        assert nearest < parameters["MIS_CORNER"] / 2 + NEAR_M, (north, east, up, nearest)
+        most = parameters["MIS_CORNER"] / 2 + NEAR_M + (JOINED_M if item == 0 else 0.0)
+        assert nearest < most, (north, east, up, nearest)
     station.until_mode(modes["Land"], 20.0)
     station.until_mode(modes["Off"], 90.0)
     down = place(station.receive(["GLOBAL_POSITION_INT"], 1.0))
