@@ -3,11 +3,10 @@
 use controller::{Command, Fault, Mode, Request, State, Uav};
 use estimator::OutOfRange;
 use link::dialect::{LOAD_COMMAND_DATA, LOAD_STATE_DATA, LoadAction, LoadFault, LoadSeen};
-use rig::{Output, Rig, parameter};
+use rig::{Output, parameter};
 
 use super::{Absence, Answer, Autopilot, Drive, Notice};
 use crate::estimate::{Estimator, Found, Unseen, params};
-use crate::mission::Flown;
 use crate::report;
 use crate::seen::Seen;
 use crate::settings::Setting;
@@ -112,67 +111,106 @@ impl Autopilot {
     fn control(&mut self, frame: Option<&LOAD_STATE_DATA>) -> Answer {
         let mut faults = self.standing_faults();
         self.overrun = false;
-        let seen = match frame {
-            Some(frame) if may_start(frame) => Seen::of(frame),
-            Some(_) => Seen::bad(),
-            None => Seen::default(),
-        };
-        let (seen, unseen) = self.see(seen);
+        let refused = self.refused.take();
+        let seen = self.look(frame, refused);
         faults.set(LoadFault::LOAD_FAULT_NO_FIX, self.watch_fixes());
         let good = seen.good();
-        self.navigates = seen.uav().is_some();
-        let length = self.settings.rig().get(parameter!("VEH_ROD"));
-        self.uav = seen.uav().copied().or_else(|| good.map(|state| above(state, length)));
-        let refused = self.refused.take();
-        self.absence = match good {
-            Some(_) => None,
-            None if seen.is_bad => Some(Absence::Bad),
-            None => refused.or(unseen.map(Absence::Unseen)).or(Some(Absence::Missing)),
-        };
-        let period_s = self.period_s();
-        if let Some(state) = good {
-            self.load = Some(*state);
-            let apart_s = if self.since_state_s.is_finite() { self.since_state_s } else { 0.0 };
-            self.apart_s = [self.apart_s[1], apart_s];
+        if self.rig.is_none() {
+            return self.nothing(frame, faults);
         }
-        self.since_state_s = if good.is_some() { 0.0 } else { self.since_state_s + period_s };
-        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
-        match self.absence {
-            None => self.counters.steps = self.counters.steps.wrapping_add(1),
-            Some(Absence::Bad) => {
-                self.counters.refused = self.counters.refused.wrapping_add(1);
-                faults |= LoadFault::LOAD_FAULT_BAD_STATE;
-            }
-            Some(_) => {
-                self.counters.missed = self.counters.missed.wrapping_add(1);
-                faults |= LoadFault::LOAD_FAULT_NO_STATE;
-            }
-        }
+        faults |= self.counters.take(self.absence);
         faults.set(LoadFault::LOAD_FAULT_STALE_STATE, refused.is_some());
         if let Some(state) = good {
-            let (action, zeta) =
-                frame.map_or((LoadAction::LOAD_ACTION_CONTINUE, [0.0; 4]), |frame| (frame.action, frame.zeta));
-            if action == LoadAction::LOAD_ACTION_START {
-                self.request = Request::Follow;
-            }
-            let length = rig.vehicle().params().rod_length;
-            let is_slack = seen.uav().is_some_and(|uav| {
-                let line = state.position - uav.position;
-                line.dot(&line) < (SLACK * length) * (SLACK * length)
-            });
-            // What stands is not taken over in flight, whatever was asked for.
-            let request = if self.stands || is_slack { Request::Idle } else { self.request };
-            begin(rig, action, zeta, state, request);
+            self.begin(state, seen.uav(), frame);
         }
-        let integral = rig.integral();
-        let before = rig.mode();
+        let Some(rig) = &mut self.rig else { return self.nothing(frame, faults) };
+        let (integral, before) = (rig.integral(), rig.mode());
         let phase = frame.map_or(0.0, |frame| frame.reference_phase);
         let mut measured = seen.measured();
         if before == Mode::Off && good.is_none() {
             // Whether it stands or flies, the first good state says.
             measured.uav = None;
         }
-        let Output { command, mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
+        let Output { mode, fault, limited, .. } = *rig.step(measured, self.request, phase);
+        self.judge(fault, before, mode);
+        faults |= fault.map_or(LoadFault::empty(), report::fault);
+        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited);
+        let mut answer = self.answer(frame, faults);
+        if let Some(state) = good
+            && (self.is_telemetry_s_turn() || frame.is_some_and(|frame| frame.telemetry != 0))
+        {
+            let sequence = answer.command.sequence;
+            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(sequence, rig, state, integral));
+        }
+        self.end_mission(mode);
+        self.watch_fence(good.map(|state| state.position), mode);
+        let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
+        self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
+        if is_down {
+            self.disarm();
+        }
+        self.end_blindness(mode);
+        answer
+    }
+
+    /// What is seen by a frame and what is known beside it; and since when and why the load is not.
+    fn look(&mut self, frame: Option<&LOAD_STATE_DATA>, refused: Option<Absence>) -> Seen {
+        let seen = match frame {
+            Some(frame) if may_start(frame) => Seen::of(frame),
+            Some(_) => Seen::bad(),
+            None => Seen::default(),
+        };
+        let (seen, unseen) = self.see(seen);
+        let good = seen.good();
+        self.navigates = seen.uav().is_some();
+        let length = self.settings.rig().get(parameter!("VEH_ROD"));
+        self.uav = seen.uav().copied().or_else(|| good.map(|state| above(state, length)));
+        self.absence = match good {
+            Some(_) => None,
+            None if seen.is_bad => Some(Absence::Bad),
+            None => refused.or(unseen.map(Absence::Unseen)).or(Some(Absence::Missing)),
+        };
+        if let Some(state) = good {
+            self.load = Some(*state);
+            let apart_s = if self.since_state_s.is_finite() { self.since_state_s } else { 0.0 };
+            self.apart_s = [self.apart_s[1], apart_s];
+        }
+        self.since_state_s = if good.is_some() { 0.0 } else { self.since_state_s + self.period_s() };
+        seen
+    }
+
+    /// What a good state does to what is asked for, and to the controller's memory, before the step
+    /// on it.
+    fn begin(&mut self, state: &State<f32>, uav: Option<&Uav<f32>>, frame: Option<&LOAD_STATE_DATA>) {
+        let (action, zeta) =
+            frame.map_or((LoadAction::LOAD_ACTION_CONTINUE, [0.0; 4]), |frame| (frame.action, frame.zeta));
+        if action == LoadAction::LOAD_ACTION_START {
+            self.request = Request::Follow;
+        }
+        let Some(rig) = &mut self.rig else { return };
+        let length = rig.vehicle().params().rod_length;
+        let is_slack = uav.is_some_and(|uav| {
+            let line = state.position - uav.position;
+            line.dot(&line) < (SLACK * length) * (SLACK * length)
+        });
+        // What stands is not taken over in flight, whatever was asked for.
+        let request = if self.stands || is_slack { Request::Idle } else { self.request };
+        let is_off = rig.mode() == Mode::Off;
+        let hover = Command::of_thrust(rig.vehicle().hover_thrust());
+        let applied = if is_off { hover } else { rig.output().command };
+        // A good state and finite numbers are not refused; if they were, the law would be as it
+        // was.
+        let begun = match action {
+            LoadAction::LOAD_ACTION_START => rig.start(state, zeta),
+            LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
+            LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
+            LoadAction::LOAD_ACTION_CONTINUE | LoadAction::LOAD_ACTION_STAND => Ok(()),
+        };
+        debug_assert!(begun.is_ok(), "{begun:?}");
+    }
+
+    /// Keeps what is wrong after a step from one mode to the next, and counts falls from the law.
+    fn judge(&mut self, fault: Option<Fault>, before: Mode, mode: Mode) {
         let is_away = matches!(self.absence, Some(Absence::Missing | Absence::Frozen | Absence::Unseen(_)));
         // To an estimator the load is out of sight whenever it stands, and back in sight when it
         // hangs.
@@ -188,38 +226,20 @@ impl Autopilot {
         }
         let has_fallen_back = is_flying(before) && self.request == Request::Follow && !is_flying(mode);
         self.counters.fallbacks = self.counters.fallbacks.wrapping_add(u32::from(has_fallen_back));
+    }
 
-        faults |= fault.map_or(LoadFault::empty(), report::fault);
-        faults.set(LoadFault::LOAD_FAULT_LIMITED, limited);
+    /// The answer after a step.
+    fn answer(&self, frame: Option<&LOAD_STATE_DATA>, faults: LoadFault) -> Answer {
+        let mut answer = self.nothing(frame, faults);
+        let Some(rig) = &self.rig else { return answer };
+        let Command { thrust, torque } = rig.output().command;
         let u_zeta = rig.u_zeta();
         let zeta = u_zeta.map_or([0.0; 4], |_| rig.zeta().map(report::number));
-        let rotor = rig.duties();
-        let mut answer = self.nothing(frame, faults);
-        answer.command = LOAD_COMMAND_DATA {
-            thrust: command.thrust,
-            torque: command.torque.into(),
-            zeta,
-            u_zeta: u_zeta.unwrap_or(0.0),
-            rotor,
-            ..answer.command
-        };
+        let (torque, u_zeta, rotor) = (torque.into(), u_zeta.unwrap_or(0.0), rig.duties());
+        answer.command = LOAD_COMMAND_DATA { thrust, torque, zeta, u_zeta, rotor, ..answer.command };
         if self.drive() == Drive::Flight {
             answer.outputs = rotor;
         }
-        if let Some(state) = good
-            && (self.is_telemetry_s_turn() || frame.is_some_and(|frame| frame.telemetry != 0))
-        {
-            let sequence = answer.command.sequence;
-            answer.telemetry = self.rig.as_ref().map(|rig| report::telemetry(sequence, rig, state, integral));
-        }
-        self.end_mission(mode);
-        self.watch_fence(good.map(|state| state.position), mode);
-        let is_down = mode == Mode::Off && (good.is_some() || before != Mode::Off);
-        self.stands = mode == Mode::Idle || is_down || mode == Mode::Off && self.stands;
-        if is_down {
-            self.disarm();
-        }
-        self.end_blindness(mode, period_s);
         answer
     }
 
@@ -272,10 +292,10 @@ impl Autopilot {
     }
 
     /// Stops the rotors where they have turned for too long without a state, or in fault.
-    fn end_blindness(&mut self, mode: Mode, period_s: f32) {
+    fn end_blindness(&mut self, mode: Mode) {
         let is_lost = self.absence.is_some_and(|absence| !matches!(absence, Absence::Unseen(Unseen::Rod(_))));
         let is_blind = mode == Mode::Fault || mode == Mode::Idle && is_lost;
-        self.blind_s = if is_blind { self.blind_s + period_s } else { 0.0 };
+        self.blind_s = if is_blind { self.blind_s + self.period_s() } else { 0.0 };
         if self.blind_s > self.settings.get(Setting::BLIND_TIMEOUT) {
             self.disarm();
             self.note(Notice::Blind);
@@ -289,21 +309,6 @@ impl Autopilot {
         self.until_telemetry = if is_turn { every - 1 } else { self.until_telemetry.saturating_sub(1) };
         is_turn
     }
-}
-
-/// What a good state does to the controller's memory before the step on it.
-fn begin(rig: &mut Rig<f32, Flown>, action: LoadAction, zeta: [f32; 4], state: &State<f32>, request: Request) {
-    let is_off = rig.mode() == Mode::Off;
-    let hover = Command::of_thrust(rig.vehicle().hover_thrust());
-    let applied = if is_off { hover } else { rig.output().command };
-    // A good state and finite numbers are not refused; if they were, the law would be as it was.
-    let begun = match action {
-        LoadAction::LOAD_ACTION_START => rig.start(state, zeta),
-        LoadAction::LOAD_ACTION_ENGAGE => rig.take_over(state, applied),
-        LoadAction::LOAD_ACTION_CONTINUE if is_off && request != Request::Idle => rig.take_over(state, applied),
-        LoadAction::LOAD_ACTION_CONTINUE | LoadAction::LOAD_ACTION_STAND => Ok(()),
-    };
-    debug_assert!(begun.is_ok(), "{begun:?}");
 }
 
 /// Whether the frame has a finite ζ, if it is one to start with.

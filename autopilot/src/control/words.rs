@@ -1,6 +1,6 @@
 //! What a board tells the control side, and what it hears back.
 
-use link::dialect::{LOAD_COMMAND_DATA, LOAD_TELEMETRY_DATA};
+use link::dialect::{LOAD_COMMAND_DATA, LOAD_TELEMETRY_DATA, LoadFault};
 
 use crate::estimate::Unseen;
 use crate::failsafe::Loss;
@@ -47,6 +47,20 @@ pub struct Counters {
     pub fallbacks: u32,
     /// Most counts of the core's timer that a control step took.
     pub worst_cycles: u32,
+}
+
+impl Counters {
+    /// Counts a control period by what was wrong with its state. Returns what the link says of
+    /// that.
+    pub(super) fn take(&mut self, absence: Option<Absence>) -> LoadFault {
+        let (counter, fault) = match absence {
+            None => (&mut self.steps, LoadFault::empty()),
+            Some(Absence::Bad) => (&mut self.refused, LoadFault::LOAD_FAULT_BAD_STATE),
+            Some(_) => (&mut self.missed, LoadFault::LOAD_FAULT_NO_STATE),
+        };
+        *counter = counter.wrapping_add(1);
+        fault
+    }
 }
 
 /// Something that has happened and that the pilot must hear of.

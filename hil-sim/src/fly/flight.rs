@@ -1,6 +1,7 @@
 //! The flight loop: a pilot at its rate, the [world](crate::world) between samples, and a watcher
 //! that sees every period.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use controller::{Command, Request, State, Vector3};
@@ -144,119 +145,176 @@ const CHECK_PERIODS: u64 = 256;
 /// Flies `scenario`. What flies before the pilot begins is a hover at the thrust that the
 /// controller takes for one; a vehicle that stands on the ground begins with its rotors off.
 pub fn fly(scenario: &Scenario, plan: &Plan<'_>, pilot: &mut dyn Answers, watch: &mut dyn FnMut(&Moment<'_>)) -> End {
-    let controller = &scenario.controller;
-    let told = &controller.vehicle;
-    let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
-    let begun = if scenario.standing { Command::zero() } else { hover };
-    let mut world = scenario.begin(&plan.start, begun, plan.seed);
-    let mut sight = scenario.estimator.as_ref().map(|estimator| {
-        // Every range of a scenario lies within the filters' own.
-        Sight::new(estimator, scenario, &plan.start, begun.thrust, plan.seed).expect("a scenario's numbers")
-    });
-    let mut applied = begun;
-    let period = 1.0 / controller.rate_hz;
+    let mut underway = Underway::new(scenario, plan, pilot);
     let steps = scenario.steps();
-    let held = scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s));
-    let distance_of = |state: &State<f64>| controller.law.distance(state.position.into());
-    let is_commanded = pilot.is_commanded();
-    let finds_its_state = pilot.finds_its_state();
-    let distance_at = |step: u64, state: &State<f64>| {
-        (!is_commanded && step.is_multiple_of(plan.distance_every)).then(|| distance_of(state))
-    };
-    let lost_m = LOST_M.max(2.0 * distance_of(&plan.start));
-
-    let mut requests = Requests::of(scenario);
-    let mut ground = Watch::new(scenario.ground, period);
-    let mut zeta = controller.zeta;
-    let mut has_begun = false;
     let mut told_s = 0.0;
-    let mut end = End::Complete;
-    let mut step = 0;
-    while step < steps {
-        if step % CHECK_PERIODS == 0 && step > 0 {
-            let flown_s = CHECK_PERIODS as f64 * period;
+    let end = loop {
+        if underway.step >= steps {
+            break End::Complete;
+        }
+        if underway.step > 0 && underway.step.is_multiple_of(CHECK_PERIODS) {
+            let flown_s = CHECK_PERIODS as f64 * underway.period;
             (plan.control.progress)(flown_s);
             told_s += flown_s;
             if plan.control.stop.load(Ordering::Relaxed) {
-                end = End::Interrupted;
-                break;
+                break End::Interrupted;
             }
         }
-        let t_s = world.time_s();
-        if held.as_ref().is_some_and(|held| held.start == step) {
-            let attitude = world.body().state().attitude;
-            world.stop(libm::atan2(attitude.m21, attitude.m22));
-            (has_begun, zeta) = (false, [0.0; 4]);
+        if let Some(end) = underway.pass(pilot, watch) {
+            break end;
         }
-        let state = world.body().state();
-        let distance_m = distance_at(step, &state);
-        if distance_m.is_some_and(|distance| distance > lost_m) {
-            end = End::Lost(t_s);
-            break;
+    };
+    underway.show_end(watch);
+    (plan.control.progress)(scenario.duration_s - told_s);
+    end
+}
+
+/// A flight at the beginning of a control period.
+struct Underway<'a> {
+    scenario: &'a Scenario,
+    plan: &'a Plan<'a>,
+    world: World,
+    /// The estimator, where there is one.
+    sight: Option<Sight>,
+    ground: Watch,
+    requests: Requests,
+    /// Periods in which an obstacle holds the vehicle.
+    held: Option<Range<u64>>,
+    lost_m: f64,
+    period: f64,
+    is_commanded: bool,
+    finds_its_state: bool,
+    /// What the controller takes for a hover, and what was commanded last.
+    hover: Command<f64>,
+    applied: Command<f64>,
+    zeta: [f64; 4],
+    has_begun: bool,
+    step: u64,
+}
+
+impl<'a> Underway<'a> {
+    fn new(scenario: &'a Scenario, plan: &'a Plan<'a>, pilot: &dyn Answers) -> Self {
+        let controller = &scenario.controller;
+        let told = &controller.vehicle;
+        let hover = Command { thrust: (told.payload_mass + told.uav_mass) * told.gravity, torque: Vector3::zeros() };
+        let begun = if scenario.standing { Command::zero() } else { hover };
+        let sight = scenario.estimator.as_ref().map(|estimator| {
+            // Every range of a scenario lies within the filters' own.
+            Sight::new(estimator, scenario, &plan.start, begun.thrust, plan.seed).expect("a scenario's numbers")
+        });
+        let period = 1.0 / controller.rate_hz;
+        Self {
+            scenario,
+            plan,
+            world: scenario.begin(&plan.start, begun, plan.seed),
+            sight,
+            ground: Watch::new(scenario.ground, period),
+            requests: Requests::of(scenario),
+            held: scenario.obstacle.map(|o| scenario.periods(o.at_s)..scenario.periods(o.at_s + o.hold_s)),
+            lost_m: LOST_M.max(2.0 * controller.law.distance(plan.start.position.into())),
+            period,
+            is_commanded: pilot.is_commanded(),
+            finds_its_state: pilot.finds_its_state(),
+            hover,
+            applied: begun,
+            zeta: controller.zeta,
+            has_begun: false,
+            step: 0,
         }
-        let on_ground = |p3: f64| plan.ground_p3.is_some_and(|ground| p3 >= ground);
-        let has_crashed = ground.has_crashed(world.body());
-        if has_crashed || on_ground(state.position.z) || on_ground(world.body().uav_position().z) {
-            end = End::Crashed(t_s);
-            break;
+    }
+
+    /// A control period; how the flight ended, if it did.
+    fn pass(&mut self, pilot: &mut dyn Answers, watch: &mut dyn FnMut(&Moment<'_>)) -> Option<End> {
+        let t_s = self.world.time_s();
+        if self.held.as_ref().is_some_and(|held| held.start == self.step) {
+            let attitude = self.world.body().state().attitude;
+            self.world.stop(libm::atan2(attitude.m21, attitude.m22));
+            (self.has_begun, self.zeta) = (false, [0.0; 4]);
         }
-        let (request, factor) = requests.at(step);
+        let state = self.world.body().state();
+        let distance_m = self.distance_m(&state);
+        if distance_m.is_some_and(|distance| distance > self.lost_m) {
+            return Some(End::Lost(t_s));
+        }
+        if self.has_crashed(&state) {
+            return Some(End::Crashed(t_s));
+        }
+        let (request, factor) = self.requests.at(self.step);
         let request = if request == Request::Follow && pilot.lands() { Request::Land } else { request };
         if let Some(factor) = factor {
             pilot.set_speed_factor(factor);
         }
-        if held.as_ref().is_some_and(|held| held.contains(&step)) {
-            watch(&Moment { request, distance_m, ..Moment::of(step, &world, &state, &ground) });
-            world.wait();
-            step += 1;
-            continue;
+        if self.held.as_ref().is_some_and(|held| held.contains(&self.step)) {
+            watch(&Moment { request, distance_m, ..self.moment(&state) });
+            self.world.wait();
+            self.step += 1;
+            return None;
         }
-        let comes = !(has_begun && world.misses());
-        let read = match &mut sight {
-            Some(sight) => sight.see(&world, &applied),
-            None => world.read(&state),
-        };
-        if !has_begun && !scenario.standing {
-            match plan.entry {
-                Entry::Stated => pilot.start(&read.state, zeta),
-                Entry::Hover => pilot.take_over(&read.state, &hover),
-            }
-        }
-        read.comes = comes;
-        // Whether it stands or flies, the first reading says.
-        read.sees_load |= !has_begun;
-        has_begun = true;
-        // A controller counts its periods.
-        let Some(decision) = pilot.step(read, request, step as f64 * period) else {
-            end = End::Unanswered(t_s);
-            break;
-        };
+        let Some(decision) = self.ask(pilot, &state, request) else { return Some(End::Unanswered(t_s)) };
         watch(&Moment {
             request,
             distance_m,
             decision: Some(decision),
-            sight: sight.as_ref().filter(|_| !finds_its_state),
-            ..Moment::of(step, &world, &state, &ground)
+            sight: self.sight.as_ref().filter(|_| !self.finds_its_state),
+            ..self.moment(&state)
         });
-        if ground.has_landed(world.body(), request, decision.mode) && requests.is_over() && !is_commanded {
-            end = End::Landed(t_s);
-            break;
+        let has_landed = self.ground.has_landed(self.world.body(), request, decision.mode);
+        if has_landed && self.requests.is_over() && !self.is_commanded {
+            return Some(End::Landed(t_s));
         }
-        applied = decision.command;
-        world.obey(decision.order());
-        step += 1;
-        if !(applied.is_finite() && world.body().is_finite()) {
-            end = End::NotFinite(t_s);
-            break;
+        self.applied = decision.command;
+        self.world.obey(decision.order());
+        self.step += 1;
+        let is_finite = self.applied.is_finite() && self.world.body().is_finite();
+        (!is_finite).then_some(End::NotFinite(t_s))
+    }
+
+    /// The pilot's answer to what it can see.
+    fn ask<'p>(&mut self, pilot: &'p mut dyn Answers, state: &State<f64>, request: Request) -> Option<&'p Decision> {
+        let Self { world, sight, has_begun, .. } = self;
+        let comes = !(*has_begun && world.misses());
+        let read = match sight {
+            Some(sight) => sight.see(world, &self.applied),
+            None => world.read(state),
+        };
+        if !*has_begun && !self.scenario.standing {
+            match self.plan.entry {
+                Entry::Stated => pilot.start(&read.state, self.zeta),
+                Entry::Hover => pilot.take_over(&read.state, &self.hover),
+            }
+        }
+        read.comes = comes;
+        // Whether it stands or flies, the first reading says.
+        read.sees_load |= !*has_begun;
+        *has_begun = true;
+        // A controller counts its periods.
+        pilot.step(read, request, self.step as f64 * self.period)
+    }
+
+    /// The end, to the watcher.
+    fn show_end(&mut self, watch: &mut dyn FnMut(&Moment<'_>)) {
+        let state = self.world.body().state();
+        // A state beyond all ranges is no number to log or to draw.
+        if state.check().is_ok() {
+            let distance_m = self.distance_m(&state);
+            let request = self.requests.at(self.step).0;
+            watch(&Moment { request, distance_m, is_over: true, ..self.moment(&state) });
         }
     }
-    let state = world.body().state();
-    // A state beyond all ranges is no number to log or to draw.
-    if state.check().is_ok() {
-        let distance_m = distance_at(step, &state);
-        let request = requests.at(step).0;
-        watch(&Moment { request, distance_m, is_over: true, ..Moment::of(step, &world, &state, &ground) });
+
+    fn moment<'m>(&'m self, state: &'m State<f64>) -> Moment<'m> {
+        Moment::of(self.step, &self.world, state, &self.ground)
     }
-    (plan.control.progress)(scenario.duration_s - told_s);
-    end
+
+    /// d_C, m, in a period in which it is taken.
+    fn distance_m(&self, state: &State<f64>) -> Option<f64> {
+        let is_taken = !self.is_commanded && self.step.is_multiple_of(self.plan.distance_every);
+        is_taken.then(|| self.scenario.controller.law.distance(state.position.into()))
+    }
+
+    fn has_crashed(&mut self, state: &State<f64>) -> bool {
+        let body = self.world.body();
+        let on_ground = |p3: f64| self.plan.ground_p3.is_some_and(|ground| p3 >= ground);
+        self.ground.has_crashed(body) || on_ground(state.position.z) || on_ground(body.uav_position().z)
+    }
 }

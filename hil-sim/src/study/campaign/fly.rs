@@ -1,13 +1,14 @@
 //! A campaign's flight, and the row of the table it leaves.
 
-use controller::{Mode, Request};
+use controller::{Command, Fault, Mode, Request};
 use rig::parameter;
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 use super::file::{ApproachFields, Campaign, Drawn};
 use crate::describe::input::Invalid;
 use crate::describe::parameters::without_path;
-use crate::describe::scenario::ControllerSpec;
+use crate::describe::scenario::{ControllerSpec, Scenario};
 use crate::fly::fault::describe;
 use crate::fly::flight::{Control, End, LOST_M, Moment};
 use crate::fly::judge::{GOOD_M, Outcome, judge};
@@ -151,106 +152,162 @@ pub fn fly_run(
 /// Flies a flight that has been drawn, with everything else random from `seed`; `None` if it was
 /// interrupted.
 pub(super) fn fly_drawn(
-    Drawn { scenario, start }: &Drawn,
+    drawn: &Drawn,
     mut pilot: Pilot<f32>,
     ground_p3: Option<f64>,
     seed: Seed,
     control: Control<'_>,
     watch: &mut dyn FnMut(&Moment<'_>),
 ) -> Option<Row> {
-    let controller = &scenario.controller;
-
-    // The limits as the controller has them, rounded to f32.
-    let limits = controller.limits.cast::<f32>();
-    let thrust_range = f64::from(limits.min_thrust)..=f64::from(limits.max_thrust);
-    let max_torque = limits.max_torque.map(f64::from);
-    let period = 1.0 / controller.rate_hz;
-    let mut row = Row {
-        run: seed.run,
-        start_distance_m: controller.law.distance(start.state.position.into()),
-        start_speed: start.state.velocity.dot(&start.state.velocity).sqrt(),
-        start_tilt_deg: start.tilt_deg,
-        start_rod_deg: start.rod_deg,
-        payload_mass: scenario.vehicle.payload_mass,
-        wind: scenario.environment.air.map_or(0.0, |air| air.wind.iter().map(|w| w * w).sum::<f64>().sqrt()),
-        ..Row::nothing()
-    };
-    let mut over_time: Vec<f64> = Vec::with_capacity(INSTANTS);
-    let (mut mode, mut fault, mut flying) = (Mode::Off, None, false);
+    let mut tally = Tally::new(drawn, seed);
+    let Drawn { scenario, start } = drawn;
     let outcome = judge(scenario, start.state, seed, ground_p3, control, &mut pilot, &mut |moment| {
-        let Some(decision) = moment.decision else { return };
-        let Decision { command, margins, .. } = decision;
-        mode = decision.mode;
+        if let Some(decision) = moment.decision {
+            tally.take(moment, decision);
+            watch(moment);
+        }
+    });
+    Some(tally.row(outcome?))
+}
+
+/// A row in the making.
+struct Tally<'a> {
+    scenario: &'a Scenario,
+    /// The limits as the controller has them, rounded to f32.
+    thrust_range: RangeInclusive<f64>,
+    max_torque: [f64; 3],
+    period: f64,
+    row: Row,
+    over_time: Vec<f64>,
+    mode: Mode,
+    fault: Option<Fault>,
+}
+
+impl<'a> Tally<'a> {
+    fn new(Drawn { scenario, start }: &'a Drawn, seed: Seed) -> Self {
+        let controller = &scenario.controller;
+        let limits = controller.limits.cast::<f32>();
+        let row = Row {
+            run: seed.run,
+            start_distance_m: controller.law.distance(start.state.position.into()),
+            start_speed: start.state.velocity.dot(&start.state.velocity).sqrt(),
+            start_tilt_deg: start.tilt_deg,
+            start_rod_deg: start.rod_deg,
+            payload_mass: scenario.vehicle.payload_mass,
+            wind: scenario.environment.air.map_or(0.0, |air| air.wind.iter().map(|w| w * w).sum::<f64>().sqrt()),
+            ..Row::nothing()
+        };
+        Self {
+            scenario,
+            thrust_range: f64::from(limits.min_thrust)..=f64::from(limits.max_thrust),
+            max_torque: limits.max_torque.map(f64::from),
+            period: 1.0 / controller.rate_hz,
+            row,
+            over_time: Vec::with_capacity(INSTANTS),
+            mode: Mode::Off,
+            fault: None,
+        }
+    }
+
+    /// Takes a control period in.
+    fn take(&mut self, moment: &Moment<'_>, decision: &Decision) {
+        self.take_mode(moment.request, decision);
+        let row = &mut self.row;
+        if let Some(margins) = &decision.margins {
+            lower(&mut row.least_q3, margins.q3);
+            lower(&mut row.least_q_b3, margins.q_b3);
+            lower(&mut row.least_tension, -margins.lambda * self.scenario.controller.vehicle.payload_mass);
+        }
+        self.take_command(&decision.command);
+        if let Some(distance) = moment.distance_m {
+            self.take_distance(moment.t_s, distance);
+        }
+    }
+
+    fn take_mode(&mut self, request: Request, decision: &Decision) {
+        let row = &mut self.row;
         if let Some(now) = decision.fault
-            && fault != Some(now)
+            && self.fault != Some(now)
         {
-            fault = Some(now);
+            self.fault = Some(now);
             row.last_fault = describe(now);
             if row.first_fault.is_empty() {
                 row.first_fault.clone_from(&row.last_fault);
             }
         }
-        let flies = matches!(mode, Mode::Join | Mode::Follow);
-        row.falls += u32::from(flying && !flies && moment.request == Request::Follow);
-        flying = flies;
-        match mode {
-            Mode::Join => row.engage_s += period,
-            Mode::Follow => row.follow_s += period,
+        let flies = |mode| matches!(mode, Mode::Join | Mode::Follow);
+        let falls = flies(self.mode) && !flies(decision.mode) && request == Request::Follow;
+        row.falls += u32::from(falls);
+        self.mode = decision.mode;
+        match self.mode {
+            Mode::Join => row.engage_s += self.period,
+            Mode::Follow => row.follow_s += self.period,
             _ => {}
         }
-        if let Some(margins) = margins {
-            lower(&mut row.least_q3, margins.q3);
-            lower(&mut row.least_q_b3, margins.q_b3);
-            lower(&mut row.least_tension, -margins.lambda * controller.vehicle.payload_mass);
-        }
+    }
+
+    fn take_command(&mut self, command: &Command<f64>) {
+        let row = &mut self.row;
         let torque = command.torque.abs();
-        let within = thrust_range.contains(&command.thrust)
-            && torque.iter().zip(max_torque).all(|(torque, limit)| *torque <= limit);
+        let within = self.thrust_range.contains(&command.thrust)
+            && torque.iter().zip(self.max_torque).all(|(torque, limit)| *torque <= limit);
         if !within {
             let finite = command.thrust.is_finite() && torque.iter().all(|torque| torque.is_finite());
             row.non_finite += u32::from(!finite);
             // Off is no command.
-            row.out_of_limits += u32::from(mode != Mode::Off);
+            row.out_of_limits += u32::from(self.mode != Mode::Off);
         }
         lower(&mut row.least_thrust, command.thrust);
         raise(&mut row.largest_thrust, command.thrust);
         torque.iter().for_each(|torque| raise(&mut row.largest_torque, *torque));
-        if let Some(distance) = moment.distance_m {
-            if distance < GOOD_M {
-                row.reached_s.get_or_insert(moment.t_s);
-            } else {
-                row.reached_s = None;
-            }
-            if moment.t_s >= over_time.len() as f64 * scenario.duration_s / INSTANTS as f64 - 0.5 * period {
-                over_time.push(distance);
-            }
+    }
+
+    fn take_distance(&mut self, t_s: f64, distance: f64) {
+        if distance < GOOD_M {
+            self.row.reached_s.get_or_insert(t_s);
+        } else {
+            self.row.reached_s = None;
         }
-        watch(moment);
-    });
-    let outcome = outcome?;
-    let Outcome { end, dc_max_m, dc_rms_m, touchdown } = outcome;
-    let is_to_land = scenario.lands();
-    let is_in_place = touchdown.load_place_m.is_some_and(|distance| distance <= IN_PLACE_M);
-    (row.verdict, row.end_s) = match end {
-        End::Crashed(t_s) => (Verdict::Crashed, t_s),
-        End::Lost(t_s) => (Verdict::Lost, t_s),
-        End::NotFinite(t_s) => (Verdict::NonFinite, t_s),
-        End::Landed(t_s) => (if is_in_place { Verdict::Good } else { Verdict::Off }, t_s),
-        _ if outcome.is_good() && !is_to_land => (Verdict::Good, scenario.duration_s),
-        _ if mode == Mode::Hold => (Verdict::Held, scenario.duration_s),
-        _ => (Verdict::Off, scenario.duration_s),
-    };
-    over_time.resize(INSTANTS, LOST_M);
-    row.dc_over_time_m = over_time.iter().map(|distance| format!("{distance:.4}")).collect::<Vec<_>>().join(";");
-    Some(Row {
-        mode: format!("{mode:?}").to_lowercase(),
-        dc_max_m,
-        dc_rms_m,
-        uav_touchdown_m_s: touchdown.uav_m_s,
-        load_touchdown_m_s: touchdown.load_m_s,
-        load_place_m: touchdown.load_place_m,
-        ..row
-    })
+        let due_s = self.over_time.len() as f64 * self.scenario.duration_s / INSTANTS as f64;
+        if t_s >= due_s - 0.5 * self.period {
+            self.over_time.push(distance);
+        }
+    }
+
+    /// The row of a flight that ended so.
+    fn row(mut self, outcome: Outcome) -> Row {
+        let (verdict, end_s) = self.verdict(&outcome);
+        self.over_time.resize(INSTANTS, LOST_M);
+        let dc_over_time: Vec<String> = self.over_time.iter().map(|distance| format!("{distance:.4}")).collect();
+        let Outcome { dc_max_m, dc_rms_m, touchdown, .. } = outcome;
+        Row {
+            verdict,
+            end_s,
+            mode: format!("{:?}", self.mode).to_lowercase(),
+            dc_max_m,
+            dc_rms_m,
+            uav_touchdown_m_s: touchdown.uav_m_s,
+            load_touchdown_m_s: touchdown.load_m_s,
+            load_place_m: touchdown.load_place_m,
+            dc_over_time_m: dc_over_time.join(";"),
+            ..self.row
+        }
+    }
+
+    /// What became of the flight, and when, s.
+    fn verdict(&self, outcome: &Outcome) -> (Verdict, f64) {
+        let scenario = self.scenario;
+        let is_in_place = outcome.touchdown.load_place_m.is_some_and(|distance| distance <= IN_PLACE_M);
+        match outcome.end {
+            End::Crashed(t_s) => (Verdict::Crashed, t_s),
+            End::Lost(t_s) => (Verdict::Lost, t_s),
+            End::NotFinite(t_s) => (Verdict::NonFinite, t_s),
+            End::Landed(t_s) => (if is_in_place { Verdict::Good } else { Verdict::Off }, t_s),
+            _ if outcome.is_good() && !scenario.lands() => (Verdict::Good, scenario.duration_s),
+            _ if self.mode == Mode::Hold => (Verdict::Held, scenario.duration_s),
+            _ => (Verdict::Off, scenario.duration_s),
+        }
+    }
 }
 
 /// The lower of the two; a NaN is none.
