@@ -36,7 +36,9 @@ pub use control::{Absence, Answer, ArmRefused, Autopilot, Boot, Counters, Drive,
 pub use estimate::Unseen;
 pub use failsafe::Loss;
 pub use metadata::{File, page as metadata_page};
-pub use mission::{Item, Kind, Memory, Mission, Progress, Refusal};
+pub use mission::{
+    Course, DEGREES, Fence, ITEMS, Item, Kind, METRES, Mark, Memory, Mission, Plan, Progress, Refusal,
+};
 pub use server::{Next, Server};
 pub use settings::{Setting, Settings, entries};
 pub use store::{Flash, FlashFault, NotKept, RECORD, Store};

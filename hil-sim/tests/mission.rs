@@ -22,7 +22,7 @@ fn read(text: &str) -> Mission {
 }
 
 fn local(text: &str, home: Option<Home>) -> Local {
-    read(text).local(home, None).unwrap_or_else(|error| panic!("{error}: {text}"))
+    read(text).local(home, None, &Defaults::default()).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
 fn plan(frame: u32) -> String {
@@ -98,9 +98,9 @@ fn table(names: &str, row: impl Fn([f64; 3]) -> String) -> String {
 #[test]
 fn the_same_flight_in_each_format_is_the_same_route() {
     let wanted = local(&plan(3), None);
-    assert_eq!(wanted.items.len(), FLIGHT.len());
+    assert_eq!(wanted.waypoints.len(), FLIGHT.len());
     let [lat, lon] = [(53.5284_f64 - HOME.latitude).to_radians(), (-113.5301 - HOME.longitude).to_radians()];
-    let [n, e, d] = wanted.items[2].point;
+    let [n, e, d] = wanted.waypoints[2].point;
     // A ball of the mean radius is right to a third of a percent.
     assert!((n / (6.371e6 * lat) - 1.0).abs() < 4e-3, "{n}");
     assert!((e / (6.371e6 * lon * HOME.latitude.to_radians().cos()) - 1.0).abs() < 4e-3, "{e}");
@@ -121,8 +121,8 @@ fn the_same_flight_in_each_format_is_the_same_route() {
         ),
     ] {
         let found = local(&text, home);
-        assert_eq!(found.items.len(), wanted.items.len(), "{what}");
-        for (found, wanted) in found.items.iter().zip(&wanted.items) {
+        assert_eq!(found.waypoints.len(), wanted.waypoints.len(), "{what}");
+        for (found, wanted) in found.waypoints.iter().zip(&wanted.waypoints) {
             for (found, wanted) in found.point.iter().zip(wanted.point) {
                 assert!((found - wanted).abs() < 0.01, "{what}: {found} against {wanted}");
             }
@@ -157,7 +157,7 @@ fn the_plane_about_home_is_exact_to_a_centimetre_at_5_km() {
         let curved = radius * (1.0 - turn.cos()) * home.latitude.to_radians().sin();
         let fallen = north - north.powi(3) / (6.0 * middle * middle);
         let text = format!("lat,lon,alt\n{latitude},{longitude},0\n{},{longitude},50\n", latitude + 1e-4);
-        let [n, e, _] = local(&text, Some(home)).items[0].point;
+        let [n, e, _] = local(&text, Some(home)).waypoints[0].point;
         assert!(n.hypot(e) > 4.9e3);
         assert!((e - east).abs() < 0.01, "{e} against {east}");
         assert!((n - fallen - curved).abs() < 0.01, "{n} against {}", fallen + curved);
@@ -178,24 +178,26 @@ fn stops_speeds_take_off_and_fences_are_read() {
         item(206, [json!(25), json!(0), json!(1), json!(0), json!(0), json!(0), json!(0)]),
         item(20, [json!(0), json!(0), json!(0), json!(0), json!(0), json!(0), json!(0)]),
     ]);
-    let read = read(&value.to_string());
-    assert!(read.notes.iter().any(|note| note.contains("206")), "{:?}", read.notes);
-    let local = read.local(None, None).unwrap();
-    assert_eq!(local.items.len(), 3);
-    assert_eq!((local.items[0].point, local.items[2].point), ([0.0, 0.0, -20.0], [0.0, 0.0, -20.0]));
-    assert!(local.items[1].item.is_smooth && local.items[1].item.stop == Some(7.0));
-    assert!(local.items.iter().all(|item| item.item.speed == Some(3.5)));
+    let defaults = Defaults { corner_m: 3.0, ..Defaults::default() };
+    let local = read(&value.to_string()).local(None, None, &defaults).unwrap();
+    assert!(local.notes.iter().any(|note| note.contains("item 5: command 206")), "{:?}", local.notes);
+    let [first, second, third] = local.waypoints[..] else { panic!("{:?}", local.waypoints) };
+    assert_eq!((first.point, third.point), ([0.0, 0.0, -20.0], [0.0, 0.0, -20.0]));
+    assert!(second.corner.is_none() && second.stop == Some(7.0));
+    assert!(local.waypoints.iter().all(|waypoint| waypoint.speed == 3.5));
+    assert!(local.course.lands);
     let regions: Vec<bool> = local.regions.iter().map(|(is_inside, _)| *is_inside).collect();
     assert_eq!(regions, [true, false]);
     assert!(matches!(&local.regions[1].1, LocalEdge::Circle(_, radius) if *radius == 30.0));
 
     // And all of it stands in the scenario that is written.
-    let text = mission::toml(&local, "x", &Defaults { speed: 2.0, corner_m: 3.0, is_closed: false }, 60.0);
+    let text = mission::toml(&local, "x", 60.0);
     let scenario = Scenario::parse("route.toml", &text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let Law::Follow { path, .. } = &scenario.controller.law else { panic!("it follows") };
-    let waypoints = path.route().unwrap().waypoints();
-    assert_eq!(waypoints[1].stop, Some(7.0));
-    assert!(waypoints[1].corner.is_none() && waypoints[0].corner == Some(3.0) && waypoints[0].speed == 3.5);
+    let route = path.route().unwrap();
+    let [first, second, _] = route.waypoints()[..] else { panic!("{text}") };
+    assert!(route.lands() && second.stop == Some(7.0));
+    assert!(second.corner.is_none() && first.corner == Some(3.0) && first.speed == 3.5);
     let fence = scenario.fence.unwrap();
     assert_eq!((fence.inside.len(), fence.outside.len()), (1, 1));
 }
@@ -204,7 +206,7 @@ fn stops_speeds_take_off_and_fences_are_read() {
 fn what_is_unclear_is_refused_by_name() {
     let refusal = |text: &str, home: Option<Home>| match mission::read("flight", text) {
         Err(error) => error.to_string(),
-        Ok(mission) => mission.local(home, None).expect_err(text).to_string(),
+        Ok(mission) => mission.local(home, None, &Defaults::default()).expect_err(text).to_string(),
     };
     let flat = FLIGHT.iter().map(|[lat, lon, _]| json!([lon, lat])).collect::<Vec<_>>();
     for (text, home, message) in [
@@ -213,8 +215,8 @@ fn what_is_unclear_is_refused_by_name() {
         (kml("clampToGround"), Some(HOME), "clampToGround"),
         (json!({ "type": "LineString", "coordinates": flat }).to_string(), Some(HOME), "height"),
         (plan(10), None, "--terrain"),
-        (plan(7), None, "MAV_FRAME 7"),
-        (plan(3).replace("\"command\":16", "\"command\":18"), None, "MAV_CMD 18"),
+        (plan(7), None, "item 1: frame 7 not supported: 0, 1, 3, 5, 6 are"),
+        (plan(3).replace("\"command\":16", "\"command\":18"), None, "item 1: command 18 not supported: 16, 17"),
         (waypoints().replace("110", "120"), None, "QGC WPL 110"),
         (waypoints().replace("\t1\n", "\n"), None, "line 2: 11 fields"),
         (table("lat,lon,agl", |[a, o, up]| format!("{a},{o},{up}")), Some(HOME), "agl"),
@@ -227,8 +229,8 @@ fn what_is_unclear_is_refused_by_name() {
         assert!(error.contains(message), "{error}, where {message} was to be named, of {text}");
     }
     // What the terrain is may be told.
-    let told = read(&kml("relativeToGround")).local(Some(HOME), Some(0.0)).unwrap();
-    assert_eq!(told.items[1].point[2], -30.0);
+    let told = read(&kml("relativeToGround")).local(Some(HOME), Some(0.0), &Defaults::default()).unwrap();
+    assert_eq!(told.waypoints[1].point[2], -30.0);
 }
 
 /// Lengths in N need no home, in whatever unit and order.
@@ -241,7 +243,7 @@ fn tables_of_lengths_are_read_as_they_say() {
         "alt_ft,y_ft,x_ft\n9.842519685,6.56167979,3.280839895\n19.68503937,16.40419948,13.12335958\n",
     ] {
         let found = local(text, None);
-        for (found, wanted) in found.items.iter().zip([[1.0, 2.0, -3.0], [4.0, 5.0, -6.0]]) {
+        for (found, wanted) in found.waypoints.iter().zip([[1.0, 2.0, -3.0], [4.0, 5.0, -6.0]]) {
             assert!(found.point.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-8), "{text}: {found:?}");
         }
     }

@@ -135,7 +135,7 @@ fn a_reset_loses_no_fence_and_arms_nothing_that_was_refused() {
     let mut autopilot = start();
     autopilot.settings_mut().unwrap().set(Setting::FENCE_MARGIN, 6.0).unwrap();
     let store = open(store.flash().clone());
-    assert_eq!(autopilot.recall(&store).unwrap_err().text, words);
+    assert_eq!(autopilot.recall(&store).unwrap_err().to_string(), words);
     for kind in Kind::ALL {
         let stored: Vec<_> = store.items(kind).collect();
         assert_eq!(debug(&kept(&autopilot, kind)), debug(&stored), "{kind:?}");

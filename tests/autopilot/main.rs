@@ -11,5 +11,6 @@ mod link;
 mod mission;
 mod modes;
 mod place;
+mod plans;
 mod station;
 mod store;

@@ -50,7 +50,7 @@ impl core::fmt::Display for ArmRefused {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Setup(error) => error.fmt(f),
-            Self::Mission(refusal) => f.write_str(&refusal.text),
+            Self::Mission(refusal) => refusal.fmt(f),
             Self::Fence => f.write_str("not armed: too near the fence, or outside"),
             Self::Weak(share) => write!(f, "not armed: {share:.2} of hover is all (ARM_THRUST)"),
             Self::NoState => f.write_str("not armed: no good state just now"),

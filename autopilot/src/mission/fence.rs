@@ -2,9 +2,12 @@
 
 use controller::{FenceEdge, FenceRegion, Real, Route, Run, Table, Vector3};
 use link::Home;
+use rig::parameter;
 
+use super::ITEMS;
 use super::item::{CIRCLE_INSIDE, CIRCLE_OUTSIDE, Item, Kind, POLYGON_INSIDE, POLYGON_OUTSIDE, Refusal};
-use super::{ITEMS, lay};
+use super::lay::{Mark, spot};
+use crate::settings::{Setting, Settings};
 
 /// What of the vehicle is where it may not be.
 const WHAT: [&str; 3] = ["the load", "the UAV", "the cable"];
@@ -19,32 +22,55 @@ struct Area {
     radius: f32,
 }
 
-/// Regions in N.
+/// Regions in N of at most `N` items.
 #[derive(Clone, Debug)]
-pub struct Fence {
-    areas: heapless::Vec<Area, ITEMS>,
-    places: heapless::Vec<[f32; 2], ITEMS>,
+pub struct Fence<const N: usize = ITEMS> {
+    areas: heapless::Vec<Area, N>,
+    places: heapless::Vec<[f32; 2], N>,
 }
 
 /// What is kept from a fence, m, and between which heights above home.
 #[derive(Clone, Copy, Debug)]
-pub struct Keeping {
+pub(super) struct Keeping {
     pub margin: f32,
     pub up: [f32; 2],
 }
 
-impl Fence {
+impl Keeping {
+    /// As the settings have it, with a `share` of their margin.
+    pub fn of(settings: &Settings, share: f32) -> Self {
+        Self {
+            margin: settings.get(Setting::FENCE_MARGIN) * share,
+            up: [settings.get(Setting::FENCE_LOW), settings.get(Setting::FENCE_HIGH)],
+        }
+    }
+}
+
+impl<const N: usize> Default for Fence<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> Fence<N> {
+    /// Without regions.
+    #[must_use]
     pub const fn new() -> Self {
         Self { areas: heapless::Vec::new(), places: heapless::Vec::new() }
     }
 
     /// Makes the regions of `items` about `home`.
+    ///
+    /// # Errors
+    /// [`Refusal`] of the first item that no fence can have; with MAV_MISSION_ERROR where only the
+    /// home is missing.
     pub fn lay(&mut self, items: &[Item], home: Option<&Home>) -> Result<(), Refusal> {
         self.areas.clear();
         self.places.clear();
         let mut number = 0;
         while let Some(item) = items.get(number) {
-            item.check(Kind::Fence, number)?;
+            let at = |refusal: Refusal| refusal.at(Kind::Fence, number);
+            item.check(Kind::Fence).map_err(at)?;
             let is_inside = matches!(item.command, POLYGON_INSIDE | CIRCLE_INSIDE);
             let [first, ..] = item.params;
             let is_polygon = matches!(item.command, POLYGON_INSIDE | POLYGON_OUTSIDE);
@@ -53,7 +79,7 @@ impl Fence {
             let of = items.get(number..number.saturating_add(corners)).unwrap_or_default();
             let is_whole = of.iter().all(|other| other.command == item.command) && of.len() == corners;
             if !is_whole || is_polygon && corners < 3 {
-                return Err(Refusal::invalid(format_args!("fence item {number}: not {first} corners in a row")));
+                return Err(at(Refusal::invalid(format_args!("not {first} corners in a row"))));
             }
             let area = Area {
                 is_inside,
@@ -61,18 +87,20 @@ impl Fence {
                 corners: if is_polygon { corners as u16 } else { 0 },
                 radius,
             };
-            for (offset, corner) in of.iter().enumerate() {
-                let corner = Item { z: 0.0, ..*corner };
-                let [n1, n2, _] = lay::place(&corner, Kind::Fence, number.saturating_add(offset), home, [0.0; 3])?;
-                let _ = self.places.push([n1, n2]);
+            let full = |_| Refusal::no_space(format_args!("fence: more than {N} items"));
+            for (corner, number) in of.iter().zip(number..) {
+                let at = |refusal: Refusal| refusal.at(Kind::Fence, number);
+                corner.check(Kind::Fence).map_err(at)?;
+                self.places.push(spot(corner, 0.0, home, [0.0; 2]).map_err(at)?).map_err(full)?;
             }
-            let _ = self.areas.push(area);
+            self.areas.push(area).map_err(|_| full([0.0; 2]))?;
             number = number.saturating_add(corners);
         }
         Ok(())
     }
 
-    fn regions(&self, up: [f32; 2]) -> impl Iterator<Item = FenceRegion<'_, f32>> {
+    /// Its regions; those to be stayed in between two heights.
+    fn between(&self, up: [f32; 2]) -> impl Iterator<Item = FenceRegion<'_, f32>> {
         self.areas.iter().filter_map(move |area| {
             let first = usize::from(area.first);
             let edge = if area.corners > 0 {
@@ -86,14 +114,41 @@ impl Fence {
         })
     }
 
+    /// Its regions, at the heights that the settings have.
+    pub fn regions(&self, settings: &Settings) -> impl Iterator<Item = FenceRegion<'_, f32>> {
+        self.between(Keeping::of(settings, 1.0).up)
+    }
+
+    /// Whether load, UAV and cable keep the settings' margin along a mission's whole `route`, which
+    /// passes its items as the `marks` say.
+    ///
+    /// # Errors
+    /// [`Refusal`] by the item that the first leg leads to which does not.
+    pub fn allows<S: Table<f32>>(
+        &self,
+        route: &mut Route<f32, S>,
+        marks: &[Mark],
+        settings: &Settings,
+    ) -> Result<(), Refusal> {
+        let rig = settings.rig();
+        let [length, gravity] = [parameter!("VEH_ROD"), parameter!("VEH_G")].map(|number| rig.get(number));
+        let Some((run, span, what)) = self.breach(route, length, gravity, &Keeping::of(settings, 1.0)) else {
+            return Ok(());
+        };
+        // The leg is named by the item that it leads to.
+        let is_ahead = |mark: &&Mark| (mark.at.run, mark.at.span) > (run, span);
+        let item = marks.iter().find(is_ahead).or(marks.last()).map_or(0, |mark| mark.item);
+        Err(Refusal::invalid(format_args!("{what} too near the fence")).at(Kind::Mission, item.into()))
+    }
+
     /// Whether a straight way keeps the margin from all regions.
-    pub fn keeps(&self, way: &[Vector3<f32>; 2], keeping: &Keeping) -> bool {
-        self.regions(keeping.up).all(|region| region.breach(way, keeping.margin).is_none())
+    pub(super) fn keeps(&self, way: &[Vector3<f32>; 2], keeping: &Keeping) -> bool {
+        self.between(keeping.up).all(|region| region.breach(way, keeping.margin).is_none())
     }
 
     /// Where `route`, flown as it is laid by a load on a cable of `length` m, first does not keep
     /// the margin: its run and span, and what does not.
-    pub fn breach<S: Table<f32>>(
+    fn breach<S: Table<f32>>(
         &self,
         route: &mut Route<f32, S>,
         length: f32,

@@ -19,17 +19,22 @@ pub const POLYGON_OUTSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUS
 pub const CIRCLE_INSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION as u16;
 pub const CIRCLE_OUTSIDE: u16 = MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION as u16;
 
+/// Commands to cameras and their mounts, of which there are none aboard: surveys of ground stations
+/// are full of them, and where the load goes does not depend on them.
+const CAMERA: [u16; 13] = [203, 204, 205, 206, 214, 530, 531, 532, 1000, 2000, 2001, 2500, 2501];
+
 const GLOBAL: u8 = MavFrame::MAV_FRAME_GLOBAL as u8;
 const GLOBAL_INT: u8 = MavFrame::MAV_FRAME_GLOBAL_INT as u8;
 const RELATIVE: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT as u8;
 const RELATIVE_INT: u8 = MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT_INT as u8;
 const LOCAL: u8 = MavFrame::MAV_FRAME_LOCAL_NED as u8;
 
-/// Degrees, and metres, of a step of x and y.
+/// Degrees of a step of an item's x and y, where they are latitude and longitude.
 pub const DEGREES: f64 = 1e-7;
+/// m of a step of x and y, where they are n1 and n2.
 pub const METRES: f64 = 1e-4;
 
-/// Longest rest, s, and largest corner, m.
+/// Longest rest, s, which is most jumps, too; and largest corner, m.
 const LONGEST: f32 = 1e5;
 const LARGEST: f32 = 1e3;
 
@@ -58,7 +63,8 @@ impl Kind {
     }
 
     /// What its items are called.
-    pub(super) fn item(self) -> &'static str {
+    #[must_use]
+    pub fn item(self) -> &'static str {
         match self {
             Self::Mission => "item",
             Self::Fence => "fence item",
@@ -74,18 +80,20 @@ impl Kind {
     }
 }
 
-/// Why items are refused: for the station's program, and for its pilot.
+/// Why items are refused: for the station's program, and, displayed, for its pilot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// A MAV_MISSION_RESULT.
     pub result: MavMissionResult,
-    /// In words that fit a STATUSTEXT.
+    /// The item that is at fault, counted from 0, if it is one.
+    pub item: Option<(Kind, u16)>,
+    /// What is wrong with it.
     pub text: Text,
 }
 
 impl Refusal {
     pub(crate) fn new(result: MavMissionResult, what: core::fmt::Arguments<'_>) -> Self {
-        Self { result, text: crate::report::cut(what) }
+        Self { result, item: None, text: crate::report::cut(what) }
     }
 
     pub(crate) fn invalid(what: core::fmt::Arguments<'_>) -> Self {
@@ -94,6 +102,20 @@ impl Refusal {
 
     pub(crate) fn no_space(what: core::fmt::Arguments<'_>) -> Self {
         Self::new(MavMissionResult::MAV_MISSION_NO_SPACE, what)
+    }
+
+    /// Of the `number`-th item of its kind.
+    pub(crate) fn at(self, kind: Kind, number: usize) -> Self {
+        Self { item: Some((kind, number as u16)), ..self }
+    }
+}
+
+impl core::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        if let Some((kind, number)) = self.item {
+            write!(f, "{} {number}: ", kind.item())?;
+        }
+        f.write_str(&self.text)
     }
 }
 
@@ -122,6 +144,22 @@ pub struct Item {
 }
 
 impl Item {
+    /// The commands of a mission that say where the load goes, or how.
+    pub const COMMANDS: [u16; 10] = [
+        WAYPOINT,
+        LOITER_UNLIMITED,
+        LOITER_TIME,
+        RETURN_TO_LAUNCH,
+        LAND,
+        TAKE_OFF,
+        SPLINE_WAYPOINT,
+        DELAY,
+        JUMP,
+        CHANGE_SPEED,
+    ];
+    /// The frames that a place can be in.
+    pub const FRAMES: [u8; 5] = [GLOBAL, LOCAL, RELATIVE, GLOBAL_INT, RELATIVE_INT];
+
     /// Of a message.
     pub fn of(item: &MISSION_ITEM_INT_DATA) -> Self {
         let &MISSION_ITEM_INT_DATA { command, frame, current, autocontinue, x, y, z, .. } = item;
@@ -175,27 +213,28 @@ impl Item {
         }
     }
 
-    /// Whether a mission can have it, as its `number`-th.
-    pub fn check(&self, kind: Kind, number: usize) -> Result<(), Refusal> {
+    /// Whether a mission or fence can have it.
+    pub(super) fn check(&self, kind: Kind) -> Result<(), Refusal> {
         use MavMissionResult as R;
-        let Self { command, frame, params: [first, second, ..], z, .. } = *self;
-        let item = kind.item();
+        let Self { command, params: [first, second, ..], z, .. } = *self;
         let within = |what: &str, value: f32, most: f32, result| {
             if (0.0..=most).contains(&value) {
                 return Ok(());
             }
-            Err(Refusal::new(result, format_args!("{item} {number}: {what} {value} not in 0 to {most}")))
+            Err(Refusal::new(result, format_args!("{what} {value} not in 0 to {most}")))
         };
-        match (kind, command) {
-            (Kind::Mission, WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF | LAND) => {
-                if ![GLOBAL, GLOBAL_INT, RELATIVE, RELATIVE_INT, LOCAL].contains(&frame) {
-                    let text = format_args!("{item} {number}: frame {frame} not supported");
-                    return Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED_FRAME, text));
-                }
-                self.check_place(item, number)?;
+        let is_known = match kind {
+            Kind::Mission => Self::COMMANDS.contains(&command) || self.is_for_camera(),
+            Kind::Fence => [POLYGON_INSIDE, POLYGON_OUTSIDE, CIRCLE_INSIDE, CIRCLE_OUTSIDE].contains(&command),
+        };
+        if !is_known {
+            return Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED, format_args!("command {command} not supported")));
+        }
+        match command {
+            WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF | LAND => {
+                self.check_place()?;
                 if command != LAND && (z.is_nan() || z.abs() > 1e5) {
-                    let text = format_args!("{item} {number}: height {z} m");
-                    return Err(Refusal::new(R::MAV_MISSION_INVALID_PARAM7, text));
+                    return Err(Refusal::new(R::MAV_MISSION_INVALID_PARAM7, format_args!("height {z} m")));
                 }
                 if matches!(command, WAYPOINT | SPLINE_WAYPOINT | LOITER_TIME) {
                     within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1)?;
@@ -205,31 +244,34 @@ impl Item {
                 }
                 Ok(())
             }
-            (Kind::Mission, DELAY) => within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
-            (Kind::Mission, CHANGE_SPEED) if second > 0.0 => {
-                within("speed", second, 100.0, R::MAV_MISSION_INVALID_PARAM2)
-            }
+            DELAY => within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
             // -1: as it is, -2: the usual one.
-            (Kind::Mission, CHANGE_SPEED) if second <= 0.0 => Ok(()),
-            (Kind::Mission, CHANGE_SPEED) => within("speed", second, 100.0, R::MAV_MISSION_INVALID_PARAM2),
-            (Kind::Mission, RETURN_TO_LAUNCH) => Ok(()),
-            (Kind::Mission, JUMP) => within("jump to", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
-            (Kind::Fence, POLYGON_INSIDE | POLYGON_OUTSIDE) => {
-                self.check_place(item, number)?;
+            CHANGE_SPEED if second <= 0.0 => Ok(()),
+            CHANGE_SPEED => within("speed", second, 100.0, R::MAV_MISSION_INVALID_PARAM2),
+            // -1: without end.
+            JUMP if second < 0.0 => within("jump to", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1),
+            JUMP => {
+                within("jump to", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1)?;
+                within("jumps", second, LONGEST, R::MAV_MISSION_INVALID_PARAM2)
+            }
+            POLYGON_INSIDE | POLYGON_OUTSIDE => {
+                self.check_place()?;
                 within("corners", first, 1e3, R::MAV_MISSION_INVALID_PARAM1)
             }
-            (Kind::Fence, CIRCLE_INSIDE | CIRCLE_OUTSIDE) => {
-                self.check_place(item, number)?;
+            CIRCLE_INSIDE | CIRCLE_OUTSIDE => {
+                self.check_place()?;
                 within("radius", first, 1e5, R::MAV_MISSION_INVALID_PARAM1)
             }
-            _ => {
-                let text = format_args!("{item} {number}: command {command} not supported");
-                Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED, text))
-            }
+            _ => Ok(()),
         }
     }
 
-    fn check_place(&self, item: &str, number: usize) -> Result<(), Refusal> {
+    fn check_place(&self) -> Result<(), Refusal> {
+        use MavMissionResult as R;
+        let Self { frame, .. } = *self;
+        if !Self::FRAMES.contains(&frame) {
+            return Err(Refusal::new(R::MAV_MISSION_UNSUPPORTED_FRAME, format_args!("frame {frame} not supported")));
+        }
         if self.is_local() || !self.is_placed() {
             return Ok(());
         }
@@ -238,10 +280,16 @@ impl Item {
                 return Ok(());
             }
             let degrees = f64::from(value) * DEGREES;
-            Err(Refusal::new(result, format_args!("{item} {number}: {name} {degrees:.1} degrees")))
+            Err(Refusal::new(result, format_args!("{name} {degrees:.1} degrees")))
         };
-        far("latitude", self.x, 900_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM5_X)?;
-        far("longitude", self.y, 1_800_000_000, MavMissionResult::MAV_MISSION_INVALID_PARAM6_Y)
+        far("latitude", self.x, 900_000_000, R::MAV_MISSION_INVALID_PARAM5_X)?;
+        far("longitude", self.y, 1_800_000_000, R::MAV_MISSION_INVALID_PARAM6_Y)
+    }
+
+    /// It says nothing of where the load goes.
+    #[must_use]
+    pub fn is_for_camera(&self) -> bool {
+        CAMERA.contains(&self.command)
     }
 
     /// Its place is in N.

@@ -1,7 +1,7 @@
 //! A mission: the route that a ground station draws, and where along it the load is.
 //!
 //! ```text
-//! items ──check──▶ kept ──about home──▶ waypoints ──build_route──▶ knots ──arm──▶ the rig's path
+//! items ──check──▶ kept ──about home──▶ a plan's waypoints ──build_route──▶ knots ──arm──▶ the rig's path
 //! ```
 //!
 //! The knots are built into memory that the board lends, while not armed. Armed, the rig has them.
@@ -10,19 +10,18 @@ mod fence;
 mod item;
 mod lay;
 
+pub use fence::Fence;
 pub(crate) use item::WORDS;
-pub use item::{DEGREES, Item, Kind, Refusal};
+pub use item::{DEGREES, Item, Kind, METRES, Refusal};
+pub use lay::{Course, Mark, Plan};
 
-use controller::{
-    Built, Follow, Knot, Mode, Passage, Route, RouteError, RoutePace, Run, Table, Vector3, build_route_passing,
-};
+use controller::{Built, FenceRegion, Follow, Knot, Mode, Passage, Route, Run, Table, Vector3, Waypoint};
 use link::Home;
 use link::dialect::MavMissionResult;
-use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError, parameter};
+use rig::{AnyPath, HARMONICS, NoFormula, Rig, SetupError};
 
-use crate::settings::{Setting, Settings};
-use fence::{Fence, Keeping};
-use lay::{Course, Waypoints};
+use crate::settings::Settings;
+use fence::Keeping;
 
 /// Most items of a mission, and of a fence.
 pub const ITEMS: usize = 128;
@@ -51,7 +50,9 @@ struct Lists {
     fence: Items,
     /// The items of an upload that have come.
     coming: Items,
-    waypoints: Waypoints,
+    waypoints: [Waypoint<f32>; STOPS],
+    /// Each waypoint's last item.
+    numbers: [u16; STOPS],
     marks: heapless::Vec<Mark, STOPS>,
     /// The fence's regions in N.
     regions: Fence,
@@ -82,7 +83,8 @@ impl<const KNOTS: usize> Memory<KNOTS> {
             mission: Items::new(),
             fence: Items::new(),
             coming: Items::new(),
-            waypoints: Waypoints::new(),
+            waypoints: [Waypoint { point: [0.0; 3], corner: None, speed: 0.0, yaw: None, stop: None }; STOPS],
+            numbers: [0; STOPS],
             marks: heapless::Vec::new(),
             regions: Fence::new(),
         };
@@ -114,32 +116,6 @@ impl Table<f32> for Laid {
     fn runs(&self) -> &[Run<f32>] {
         self.runs.get(..self.built.runs).unwrap_or_default()
     }
-}
-
-/// The numbers that items leave out.
-#[derive(Clone, Copy, Debug)]
-pub struct Pace {
-    speed: f32,
-    corner: f32,
-    acceleration: f32,
-}
-
-impl Pace {
-    fn of(settings: &Settings) -> Self {
-        Self {
-            speed: settings.get(Setting::MISSION_SPEED),
-            corner: settings.get(Setting::MISSION_CORNER),
-            acceleration: settings.get(Setting::MISSION_ACCELERATION),
-        }
-    }
-}
-
-/// Where the route passes a waypoint, with the speed of the leg that leads there, m/s.
-#[derive(Clone, Copy, Debug)]
-struct Mark {
-    item: u16,
-    at: Passage,
-    speed: f32,
 }
 
 /// A mission, its fence, and the home that both are counted from.
@@ -190,6 +166,23 @@ impl Mission {
         self.lists.as_ref().map_or(&[], |lists| &lists.marks)
     }
 
+    /// The route that was laid last, for what looks along it; none while a rig flies it.
+    #[must_use]
+    pub fn table(&self) -> Option<&impl Table<f32>> {
+        self.laid.as_ref()
+    }
+
+    /// How that ends.
+    #[must_use]
+    pub fn course(&self) -> &Course {
+        &self.course
+    }
+
+    /// The fence's regions in N.
+    pub fn regions(&self, settings: &Settings) -> impl Iterator<Item = FenceRegion<'_, f32>> {
+        self.lists.iter().flat_map(|lists| lists.regions.regions(settings))
+    }
+
     /// Where N has its origin.
     #[must_use]
     pub fn home(&self) -> Option<&Home> {
@@ -226,7 +219,7 @@ impl Mission {
     /// # Errors
     /// No mission or fence can have it.
     pub(crate) fn take(&mut self, kind: Kind, item: Item) -> Result<(), Refusal> {
-        item.check(kind, self.coming())?;
+        item.check(kind).map_err(|refusal| refusal.at(kind, self.coming()))?;
         let lists = self.lists.as_mut().ok_or_else(no_memory)?;
         lists.coming.push(item).map_err(|_| Refusal::no_space(format_args!("mission: too many items")))
     }
@@ -241,7 +234,7 @@ impl Mission {
         match self.lay(settings) {
             Ok(()) => {
                 self.first = 0;
-                Ok(None)
+                Ok(self.passed_over().filter(|_| kind == Kind::Mission))
             }
             // It is laid again when it is to be flown: the home may come later.
             Err(refusal) if refusal.result == MavMissionResult::MAV_MISSION_ERROR => Ok(Some(refusal)),
@@ -253,6 +246,15 @@ impl Mission {
                 Err(refusal)
             }
         }
+    }
+
+    /// What is kept and not done: cameras' items, by the first of them.
+    fn passed_over(&self) -> Option<Refusal> {
+        let items = self.items(Kind::Mission);
+        let number = items.iter().position(Item::is_for_camera)?;
+        let command = items.get(number)?.command;
+        let text = format_args!("command {command}: no camera, passed over");
+        Some(Refusal::new(MavMissionResult::MAV_MISSION_ACCEPTED, text).at(Kind::Mission, number))
     }
 
     /// Takes `items` that were kept over a reset, whatever they are: to lay them comes next.
@@ -288,56 +290,28 @@ impl Mission {
     /// One of them can't be, or the route does not keep the fence's margin.
     pub(crate) fn lay(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let Self { lists, home, laid, course, .. } = self;
-        let Lists { mission, fence, waypoints, marks, regions, .. } = &mut **lists.as_mut().ok_or_else(no_memory)?;
+        let Lists { mission, fence, waypoints, numbers, marks, regions, .. } =
+            &mut **lists.as_mut().ok_or_else(no_memory)?;
         marks.clear();
         regions.lay(fence, home.as_ref())?;
         if mission.is_empty() {
             return Ok(());
         }
         let laid = laid.as_mut().ok_or_else(no_memory)?;
-        let pace = Pace::of(settings);
-        *course = waypoints.lay(mission, home.as_ref(), &pace)?;
-        let (all, numbers) = (&waypoints.all, &waypoints.items);
-        let route_pace = RoutePace { acceleration: pace.acceleration, ..RoutePace::default() };
-        let mut speed = pace.speed;
-        let built = build_route_passing(all, course.is_closed, &route_pace, laid.knots, laid.runs, |waypoint, at| {
-            // A stop is where the run before ends; of its beginning the next one is told again.
-            let item = numbers.get(waypoint).copied().unwrap_or_default();
-            if marks.last().is_none_or(|mark| mark.item != item) {
-                let _ = marks.push(Mark { item, at, speed });
-            }
-            speed = all.get(waypoint).map_or(speed, |waypoint| waypoint.speed);
-        });
-        let number = |waypoint: usize| numbers.get(waypoint).copied().unwrap_or_default();
-        laid.built = built.map_err(|error| match error {
-            RouteError::Knots | RouteError::Runs => {
-                Refusal::no_space(format_args!("the route is too long for this board"))
-            }
-            RouteError::TooFew => Refusal::invalid(format_args!("a mission needs at least two places")),
-            RouteError::SharpTurn(at) => {
-                Refusal::invalid(format_args!("item {}: turns over 150 deg, needs a rest", number(at)))
-            }
-            RouteError::ShortLeg(at) => Refusal::invalid(format_args!("item {}: next one too near", number(at))),
-            RouteError::Waypoint(at, error) => Refusal::invalid(format_args!("item {}: {error}", number(at))),
-            error => Refusal::invalid(format_args!("{error}")),
+        let plan = Plan::read(mission, home.as_ref(), settings, waypoints, numbers)?;
+        *course = *plan.course();
+        laid.built = plan.build(laid.knots, laid.runs, |mark| {
+            let _ = marks.push(mark);
         })?;
         let mut route = Route::new(&*laid).map_err(|error| Refusal::invalid(format_args!("route: {error}")))?;
-        let rig = settings.rig();
-        let [length, gravity] = [parameter!("VEH_ROD"), parameter!("VEH_G")].map(|number| rig.get(number));
-        let Some((run, span, what)) = regions.breach(&mut route, length, gravity, &keeping(settings, 1.0)) else {
-            return Ok(());
-        };
-        // The leg is named by the item that it leads to.
-        let is_ahead = |mark: &&Mark| (mark.at.run, mark.at.span) > (run, span);
-        let item = marks.iter().find(is_ahead).or(marks.last()).map_or(0, |mark| mark.item);
-        Err(Refusal::invalid(format_args!("item {item}: {what} too near the fence")))
+        regions.allows(&mut route, marks, settings)
     }
 
     /// Whether load, UAV and cable keep half of the margin from the fence: the other half is what
     /// it takes to stop. From the ground, where it `rises`, the least height is yet to be reached.
     pub(crate) fn keeps_fence(&self, bodies: &[Vector3<f32>; 2], rises: bool, settings: &Settings) -> bool {
         let Some(lists) = &self.lists else { return true };
-        let Keeping { margin, up: [low, high] } = keeping(settings, 0.5);
+        let Keeping { margin, up: [low, high] } = Keeping::of(settings, 0.5);
         let low = if rises { f32::NEG_INFINITY } else { low };
         lists.regions.keeps(bodies, &Keeping { margin, up: [low, high] })
     }
@@ -352,7 +326,7 @@ impl Mission {
         settings: &Settings,
     ) -> Option<&'static str> {
         let lists = self.lists.as_ref()?;
-        let keeping = keeping(settings, 1.0);
+        let keeping = Keeping::of(settings, 1.0);
         let [load, uav] = [0, 1].map(|body: usize| [from, to].map(|at| at.get(body).copied().unwrap_or_default()));
         [("the load", load), ("the UAV", uav), ("the cable", *from), ("the cable", *to)]
             .into_iter()
@@ -439,14 +413,6 @@ impl Mission {
             route.begin_run(self.first);
         }
         Ok(())
-    }
-}
-
-/// What is kept from the fence, with a `share` of the margin.
-fn keeping(settings: &Settings, share: f32) -> Keeping {
-    Keeping {
-        margin: settings.get(Setting::FENCE_MARGIN) * share,
-        up: [settings.get(Setting::FENCE_LOW), settings.get(Setting::FENCE_HIGH)],
     }
 }
 

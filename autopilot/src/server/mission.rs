@@ -183,7 +183,7 @@ impl Server {
             return refuse(&text, R::MAV_MISSION_NO_SPACE);
         }
         if let Err(refusal) = mission.begin() {
-            return refuse(&refusal.text, refusal.result);
+            return refuse(&refusal, refusal.result);
         }
         self.transfer.upload = None;
         if count == 0 {
@@ -236,13 +236,13 @@ impl Server {
             }
             Ok(Some(remark)) => {
                 if let Some(remark) = remark {
-                    send(warning(remark.text));
+                    send(warning(remark));
                 }
                 (self.transfer.reached, self.transfer.has_changed) = (0, true);
                 MavMissionResult::MAV_MISSION_ACCEPTED
             }
             Err(refusal) => {
-                send(warning(refusal.text));
+                send(warning(&refusal));
                 refusal.result
             }
         };

@@ -129,7 +129,7 @@ impl Server {
     /// What to say of a mission that was kept, and makes no route any more.
     #[must_use]
     pub fn not_recalled(refusal: &Refusal) -> MavMessage {
-        warning(&refusal.text)
+        warning(refusal)
     }
 
     /// The sign of life.

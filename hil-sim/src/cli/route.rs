@@ -1,12 +1,14 @@
 //! `route`: a mission of a ground station or a map as a route.
 
+use autopilot::Settings;
 use clap::Args;
-use controller::{Vehicle, VehicleParams};
-use hil_sim::describe::mission::{self, Defaults, Home};
+use controller::{End, Vehicle, VehicleParams};
+use hil_sim::describe::mission::{self, Defaults, Home, Local};
 use hil_sim::describe::path::RouteSpec;
 use hil_sim::describe::scenario::{Law, Scenario};
 use hil_sim::report;
 use hil_sim::study::check::{Limits, Report};
+use rig::parameter;
 use std::error::Error;
 use std::io::{self, Write};
 use std::ops::RangeInclusive;
@@ -24,8 +26,9 @@ pub const EXAMPLES: &str = "Examples:
 
 Read are QGroundControl's .plan, MAVLink's .waypoints, KML, GPX, GeoJSON, and CSV with a line of names: north, east, up or
 down; x, y, z (down); lat, lon, alt (above the sea) or alt_rel (above home); each with a unit, as in up_ft, if it is not
-metres or degrees. What the file leads along the waypoints is the payload. The file that is written is a scenario: run,
-check, and campaign fly its [path]. Heights count from home; n1 and n2 are WGS 84's, about home, to rounding.";
+metres or degrees. What the file leads along the waypoints is the payload. A .plan or .waypoints is read as the flight program
+reads it when a ground station sends it, and refused as there. The file that is written is a scenario: run, check, and
+campaign fly its [path]. Heights count from home; n1 and n2 are WGS 84's, about home, to rounding.";
 
 /// What to read, and what to write.
 #[derive(Args)]
@@ -40,11 +43,12 @@ pub struct RouteArguments {
     /// Height of the ground, m above the sea, for heights that the file counts from the terrain.
     #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
     terrain: Option<f64>,
-    /// Speed where the file says none, m/s.
-    #[arg(long, value_name = "M/S", allow_hyphen_values = true, value_parser = speed)]
-    speed: Option<f64>,
-    /// How far from a waypoint its corner's blend begins, m.
-    #[arg(long, default_value_t = 2.0, value_name = "METRES", allow_hyphen_values = true, value_parser = corner)]
+    /// Speed where the file says none, m/s: a vehicle's MIS_SPEED.
+    #[arg(long, default_value_t = Defaults::default().speed, value_name = "M/S", allow_hyphen_values = true, value_parser = speed)]
+    speed: f64,
+    /// How far from a waypoint its corner's blend begins where the file does not say, m: a
+    /// vehicle's MIS_CORNER.
+    #[arg(long, default_value_t = Defaults::default().corner_m, value_name = "METRES", allow_hyphen_values = true, value_parser = corner)]
     corner: f64,
     /// The last waypoint leads back to the first.
     #[arg(long)]
@@ -73,8 +77,6 @@ fn within(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, Str
     inside.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
 }
 
-/// Speed where neither file nor command line says one, m/s.
-const SPEED: f64 = 2.0;
 /// Part of the route's time, and s, that a flight of it is given beyond.
 const LONGER: (f64, f64) = (1.05, 20.0);
 
@@ -88,15 +90,14 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
         report::try_file(to)?;
     }
     let mission = mission::read(&name, &text).map_err(|error| named(&error))?;
-    let local = mission.local(*home, *terrain).map_err(|error| named(&error))?;
-    let defaults =
-        Defaults { speed: speed.or(mission.speed).unwrap_or(SPEED), corner_m: *corner, is_closed: *closed };
+    let defaults = Defaults { speed: *speed, corner_m: *corner, is_closed: *closed };
+    let local = mission.local(*home, *terrain, &defaults).map_err(|error| named(&error))?;
     let source = file.file_name().unwrap_or_default().to_string_lossy();
 
     // Written with the time that the route takes, which is known once it has been read.
-    let (first, _) = checked(&mission::toml(&local, &source, &defaults, 1.0)).map_err(|error| named(&error))?;
-    let duration_s = (LONGER.0 * first.lap_time + LONGER.1).min(1e5);
-    let written = mission::toml(&local, &source, &defaults, duration_s);
+    let (first, _) = checked(&mission::toml(&local, &source, 1.0)).map_err(|error| named(&error))?;
+    let duration_s = duration_s(&local, first.lap_time);
+    let written = mission::toml(&local, &source, duration_s);
     let (report, route) = checked(&written).map_err(|error| named(&error))?;
     if let Some(to) = &common.out {
         report::write_file(to, written.as_bytes())?;
@@ -106,7 +107,7 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
     }
     let mut out = io::stdout().lock();
     if *rust {
-        write!(out, "{}", mission::rust(route.table(), &source))?;
+        write!(out, "{}", mission::rust(&route, &source))?;
     } else if *c {
         write!(out, "{}", mission::c(&route, &source))?;
     } else if common.out.is_none() {
@@ -114,7 +115,7 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
     }
     if !common.quiet {
         // Out of the way of what is to be pasted.
-        for note in &mission.notes {
+        for note in &local.notes {
             eprintln!("{note}");
         }
         eprint!(
@@ -122,6 +123,19 @@ pub fn route(common: &Common, arguments: &RouteArguments) -> Ended {
         );
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// How long the flight of a mission may take whose route takes `once_s`: once of what has no end.
+fn duration_s(local: &Local, once_s: f64) -> f64 {
+    let rounds = match local.course.end {
+        End::Again(times) if times < u32::MAX => f64::from(times) + 1.0,
+        _ => 1.0,
+    };
+    let height = local.waypoints.last().map_or(0.0, |last| -last.point[2]).max(0.0);
+    let settings = Settings::default();
+    let descent = f64::from(settings.rig().get(parameter!("POL_DESCENT")));
+    let landing_s = if local.course.lands { height / descent } else { 0.0 };
+    (LONGER.0 * (rounds * once_s + landing_s) + LONGER.1).min(1e5)
 }
 
 /// The route of a scenario's text, and what it asks of the paper's vehicle.

@@ -413,7 +413,7 @@ pub const SECTIONS: &[Section] = &[
             key(
                 "yaw",
                 "rad",
-                Other("-1000 to 1000, a list of these, one each, \"tangent\", or { x, y }"),
+                Other("-1000 to 1000, \"tangent\", a list of these, one each, or { x, y }"),
                 "0.0",
                 "ψ_d, changing evenly from waypoint to waypoint; with x and y the nose points to a vertical line.",
             ),

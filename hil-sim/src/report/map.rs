@@ -48,7 +48,7 @@ pub fn map(title: &str, local: &Local, lap: &Lap) -> Result<String, ReportError>
             let closed = edge.iter().chain(edge.first()).map(|point| at(*point));
             chart.draw_series(LineSeries::new(closed, colour.stroke_width(2 * FINE)))?;
         }
-        let waypoints = || local.items.iter().map(|item| at([item.point[0], item.point[1]]));
+        let waypoints = || local.waypoints.iter().map(|waypoint| at([waypoint.point[0], waypoint.point[1]]));
         chart.draw_series(DashedLineSeries::new(waypoints(), 6 * FINE, 4 * FINE, GREY.stroke_width(FINE)))?;
         // Legs, and over them blends: pieces of nodes in a row that bend.
         chart.draw_series(LineSeries::new(points().map(at), COLOURS[0].stroke_width(2 * FINE)))?;
@@ -58,12 +58,12 @@ pub fn map(title: &str, local: &Local, lap: &Lap) -> Result<String, ReportError>
                 chart.draw_series(LineSeries::new(bent, COLOURS[1].stroke_width(3 * FINE)))?;
             }
         }
-        for (index, (item, place)) in local.items.iter().zip(waypoints()).enumerate() {
-            let style = match item.item.stop {
+        for (index, (waypoint, place)) in local.waypoints.iter().zip(waypoints()).enumerate() {
+            let style = match waypoint.stop {
                 Some(_) => COLOURS[1].filled(),
                 None => GREY.stroke_width(FINE),
             };
-            let size = if item.item.stop.is_some() { 7 } else { 4 };
+            let size = if waypoint.stop.is_some() { 7 } else { 4 };
             chart.draw_series([Circle::new(place, size * FINE, style)])?;
             let style = (FONT, 12 * FINE).into_font();
             chart.draw_series([EmptyElement::at(place) + Text::new(index.to_string(), (60, -150), style)])?;

@@ -1,6 +1,6 @@
 //! What the columns of a table of waypoints are, by its line of names.
 
-use super::{Height, Spot};
+use super::map::{Height, Spot};
 
 use controller::Vector3;
 use std::fmt;

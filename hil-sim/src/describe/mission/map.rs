@@ -1,45 +1,164 @@
-//! Missions drawn on a map: KML, GPX and GeoJSON. Lines and points are flown in the file's order,
-//! polygons are what the flight stays in.
+//! Missions drawn on a map, KML, GPX and GeoJSON, or listed in a table. Lines and points are flown
+//! in the file's order, polygons are what the flight stays in.
 
+use autopilot::Course;
+use controller::{Vector3, Waypoint};
 use geojson::{GeoJson, GeometryValue};
 use kml::types::{AltitudeMode, Coord, Geometry};
 use kml::{Kml, KmlReader};
 
-use super::{Edge, Height, Home, Item, Mission, MissionError, Region, Spot};
+use super::{Defaults, Home, Local, LocalEdge, MissionError, NO_HOME, NO_TERRAIN, csv, is_place, placed};
 
-/// KML: placemarks' lines and points; one that is named home is that.
-pub fn kml(text: &str) -> Result<Mission, MissionError> {
-    let read: Kml<f64> = KmlReader::from_string(text).read().map_err(MissionError::new)?;
-    let mut mission = Mission::default();
-    take_kml(&read, &mut mission)?;
-    Ok(mission)
+/// Where a point is, seen from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Spot {
+    /// Latitude and longitude, degrees.
+    Earth([f64; 2]),
+    /// n1 and n2, m.
+    Local([f64; 2]),
 }
 
-fn take_kml(element: &Kml<f64>, mission: &mut Mission) -> Result<(), MissionError> {
+/// Above what a point is, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Height {
+    /// The sea.
+    Amsl(f64),
+    /// The home.
+    Relative(f64),
+    /// The ground under it.
+    Terrain(f64),
+}
+
+/// What a map or a table says.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Map {
+    /// The home, where the file says it.
+    pub home: Option<Home>,
+    /// Points, in the order flown.
+    pub points: Vec<(Spot, Height)>,
+    /// Polygons to stay in, by their corners' latitudes and longitudes, degrees.
+    pub inside: Vec<Vec<[f64; 2]>>,
+    /// What was passed over.
+    pub notes: Vec<String>,
+}
+
+/// Points nearer than this are one, m: no leg is shorter.
+const SAME: f64 = controller::SHORTEST_LEG;
+/// From home, m.
+const FURTHEST: f64 = 1e5;
+
+impl Map {
+    /// The map in N, as [`Mission::local`](super::Mission::local).
+    pub(super) fn local(
+        &self,
+        home: Option<Home>,
+        terrain: Option<f64>,
+        defaults: &Defaults,
+    ) -> Result<Local, MissionError> {
+        let home = home.or(self.home).map(placed).transpose()?;
+        let needed = || home.ok_or_else(|| MissionError(NO_HOME.to_owned()));
+        let mut waypoints: Vec<Waypoint<f64>> = Vec::new();
+        for (index, (spot, height)) in self.points.iter().enumerate() {
+            let named = |error: MissionError| MissionError(format!("point {}: {error}", index + 1));
+            let up = match height {
+                Height::Relative(up) => *up,
+                Height::Amsl(altitude) => altitude - needed().map_err(named)?.altitude,
+                Height::Terrain(above) => {
+                    let ground = terrain.ok_or_else(|| named(MissionError(NO_TERRAIN.to_owned())))?;
+                    ground + above - needed().map_err(named)?.altitude
+                }
+            };
+            let [n1, n2] = match spot {
+                Spot::Local(place) => *place,
+                Spot::Earth(place) => {
+                    needed().and_then(|home| from_home(home, *place, home.altitude + up)).map_err(named)?
+                }
+            };
+            let point = [n1, n2, 0.0 - up];
+            let is_same = |before: &Waypoint<f64>| {
+                let away = Vector3::from(before.point) - Vector3::from(point);
+                away.dot(&away) < SAME * SAME
+            };
+            if !waypoints.last().is_some_and(is_same) {
+                let Defaults { speed, corner_m, .. } = *defaults;
+                waypoints.push(Waypoint { point, corner: Some(corner_m), speed, yaw: None, stop: None });
+            }
+        }
+        let polygon = |corners: &Vec<[f64; 2]>| {
+            let corner = |place: &[f64; 2]| needed().and_then(|home| from_home(home, *place, home.altitude));
+            Ok((true, LocalEdge::Polygon(corners.iter().map(corner).collect::<Result<_, MissionError>>()?)))
+        };
+        let regions = self.inside.iter().map(polygon).collect::<Result<_, MissionError>>()?;
+        let course = Course { is_closed: defaults.is_closed, ..Course::default() };
+        Ok(Local { home, waypoints, course, regions, notes: self.notes.clone() })
+    }
+
+    /// With as many points as a route needs.
+    fn checked(self) -> Result<Self, MissionError> {
+        match self.points.len() {
+            count @ 0..2 => Err(MissionError(format!("{count} points to fly to where a route needs at least 2"))),
+            _ => Ok(self),
+        }
+    }
+}
+
+/// n1 and n2 of a place of the earth, m.
+fn from_home(home: Home, [latitude, longitude]: [f64; 2], altitude: f64) -> Result<[f64; 2], MissionError> {
+    if !is_place([latitude, longitude]) {
+        return Err(MissionError(format!("{latitude}, {longitude} is no latitude and longitude in degrees")));
+    }
+    let [north, east] = home.local([latitude, longitude], altitude);
+    if north.hypot(east) > FURTHEST {
+        let away = 1e-3 * north.hypot(east);
+        return Err(MissionError(format!("{latitude}, {longitude} is {away:.0} km from home: at most 100")));
+    }
+    Ok([north, east])
+}
+
+/// A table: its points in the order flown.
+pub fn table(file: &str, text: &str) -> Result<Map, MissionError> {
+    // Its own errors name the file.
+    let within = |error: csv::PointsError| {
+        MissionError(error.to_string().trim_start_matches(file).trim_start_matches(':').trim_start().to_owned())
+    };
+    let csv::Rows { columns, rows } = csv::rows(file, text, 100_000).map_err(within)?;
+    let points = rows.iter().map(|(_, point)| columns.spot(point)).collect();
+    Map { points, notes: vec![format!("columns: {columns}")], ..Map::default() }.checked()
+}
+
+/// KML: placemarks' lines and points; one that is named home is that.
+pub fn kml(text: &str) -> Result<Map, MissionError> {
+    let read: Kml<f64> = KmlReader::from_string(text).read().map_err(MissionError::new)?;
+    let mut map = Map::default();
+    take_kml(&read, &mut map)?;
+    map.checked()
+}
+
+fn take_kml(element: &Kml<f64>, map: &mut Map) -> Result<(), MissionError> {
     match element {
-        Kml::KmlDocument(document) => document.elements.iter().try_for_each(|element| take_kml(element, mission)),
-        Kml::Document { elements, .. } => elements.iter().try_for_each(|element| take_kml(element, mission)),
-        Kml::Folder(folder) => folder.elements.iter().try_for_each(|element| take_kml(element, mission)),
+        Kml::KmlDocument(document) => document.elements.iter().try_for_each(|element| take_kml(element, map)),
+        Kml::Document { elements, .. } => elements.iter().try_for_each(|element| take_kml(element, map)),
+        Kml::Folder(folder) => folder.elements.iter().try_for_each(|element| take_kml(element, map)),
         Kml::Placemark(placemark) => {
             let name = placemark.name.as_deref().unwrap_or("a placemark");
             let Some(geometry) = &placemark.geometry else { return Ok(()) };
             match geometry {
                 Geometry::Point(point) if name.eq_ignore_ascii_case("home") => {
                     let Coord { x: longitude, y: latitude, z } = point.coord;
-                    mission.home = Some(Home { latitude, longitude, altitude: z.unwrap_or(0.0) });
+                    map.home = Some(Home { latitude, longitude, altitude: z.unwrap_or(0.0) });
                     Ok(())
                 }
-                geometry => take_geometry(geometry, name, mission),
+                geometry => take_geometry(geometry, name, map),
             }
         }
-        Kml::Point(point) => take_geometry(&Geometry::Point(point.clone()), "a point", mission),
-        Kml::LineString(line) => take_geometry(&Geometry::LineString(line.clone()), "a line", mission),
-        Kml::Polygon(polygon) => take_geometry(&Geometry::Polygon(polygon.clone()), "a polygon", mission),
+        Kml::Point(point) => take_geometry(&Geometry::Point(point.clone()), "a point", map),
+        Kml::LineString(line) => take_geometry(&Geometry::LineString(line.clone()), "a line", map),
+        Kml::Polygon(polygon) => take_geometry(&Geometry::Polygon(polygon.clone()), "a polygon", map),
         _ => Ok(()),
     }
 }
 
-fn take_geometry(geometry: &Geometry<f64>, name: &str, mission: &mut Mission) -> Result<(), MissionError> {
+fn take_geometry(geometry: &Geometry<f64>, name: &str, map: &mut Map) -> Result<(), MissionError> {
     let mut fly = |coords: &[Coord<f64>], mode: &AltitudeMode| {
         for Coord { x: longitude, y: latitude, z } in coords {
             let height = match (mode, z) {
@@ -53,7 +172,7 @@ fn take_geometry(geometry: &Geometry<f64>, name: &str, mission: &mut Mission) ->
                     return Err(MissionError(format!("{name}: {message}")));
                 }
             };
-            mission.items.push(Item::at(Spot::Earth([*latitude, *longitude]), height));
+            map.points.push((Spot::Earth([*latitude, *longitude]), height));
         }
         Ok(())
     };
@@ -62,38 +181,38 @@ fn take_geometry(geometry: &Geometry<f64>, name: &str, mission: &mut Mission) ->
         Geometry::LineString(line) => fly(&line.coords, &line.altitude_mode),
         Geometry::LinearRing(ring) => fly(&ring.coords, &ring.altitude_mode),
         Geometry::Polygon(polygon) => {
-            let corners = polygon.outer.coords.iter().map(|coord| Spot::Earth([coord.y, coord.x]));
-            mission.regions.push(Region { is_inside: true, edge: polygon_of(corners.collect()) });
+            let corners = polygon.outer.coords.iter().map(|coord| [coord.y, coord.x]);
+            map.inside.push(polygon_of(corners.collect()));
             Ok(())
         }
         Geometry::MultiGeometry(many) => {
-            many.geometries.iter().try_for_each(|geometry| take_geometry(geometry, name, mission))
+            many.geometries.iter().try_for_each(|geometry| take_geometry(geometry, name, map))
         }
         _ => {
-            mission.notes.push(format!("{name}: passed over"));
+            map.notes.push(format!("{name}: passed over"));
             Ok(())
         }
     }
 }
 
 /// A polygon without the last corner that repeats the first.
-fn polygon_of(mut corners: Vec<Spot>) -> Edge {
+fn polygon_of(mut corners: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     if corners.len() > 1 && corners.first() == corners.last() {
         corners.pop();
     }
-    Edge::Polygon(corners)
+    corners
 }
 
 /// GPX: its routes, or else its tracks, or else its waypoints; a waypoint that is named home is
 /// that. Elevations are above the sea.
-pub fn gpx(text: &str) -> Result<Mission, MissionError> {
+pub fn gpx(text: &str) -> Result<Map, MissionError> {
     let read = gpx::read(text.as_bytes()).map_err(MissionError::new)?;
-    let mut mission = Mission::default();
+    let mut map = Map::default();
     let is_home =
         |waypoint: &&gpx::Waypoint| waypoint.name.as_deref().is_some_and(|name| name.eq_ignore_ascii_case("home"));
     if let Some(home) = read.waypoints.iter().find(is_home) {
         let (longitude, latitude) = home.point().x_y();
-        mission.home = Some(Home { latitude, longitude, altitude: home.elevation.unwrap_or(0.0) });
+        map.home = Some(Home { latitude, longitude, altitude: home.elevation.unwrap_or(0.0) });
     }
     let routes: Vec<&gpx::Waypoint> = read.routes.iter().flat_map(|route| &route.points).collect();
     let segments = read.tracks.iter().flat_map(|track| &track.segments);
@@ -104,66 +223,64 @@ pub fn gpx(text: &str) -> Result<Mission, MissionError> {
         let (longitude, latitude) = waypoint.point().x_y();
         let elevation =
             waypoint.elevation.ok_or_else(|| MissionError(format!("point {}: it has no elevation", index + 1)))?;
-        mission.items.push(Item::at(Spot::Earth([latitude, longitude]), Height::Amsl(elevation)));
+        map.points.push((Spot::Earth([latitude, longitude]), Height::Amsl(elevation)));
     }
-    Ok(mission)
+    map.checked()
 }
 
 /// GeoJSON: lines and points of three numbers, longitude, latitude and height.
-pub fn geojson(text: &str) -> Result<Mission, MissionError> {
+pub fn geojson(text: &str) -> Result<Map, MissionError> {
     let read: GeoJson = text.parse().map_err(MissionError::new)?;
-    let mut mission = Mission::default();
+    let mut map = Map::default();
     match &read {
-        GeoJson::Geometry(geometry) => take_json(&geometry.value, &mut mission)?,
-        GeoJson::Feature(feature) => take_feature(feature, &mut mission)?,
+        GeoJson::Geometry(geometry) => take_json(&geometry.value, &mut map)?,
+        GeoJson::Feature(feature) => take_feature(feature, &mut map)?,
         GeoJson::FeatureCollection(collection) => {
-            collection.features.iter().try_for_each(|feature| take_feature(feature, &mut mission))?;
+            collection.features.iter().try_for_each(|feature| take_feature(feature, &mut map))?;
         }
     }
-    Ok(mission)
+    map.checked()
 }
 
-fn take_feature(feature: &geojson::Feature, mission: &mut Mission) -> Result<(), MissionError> {
+fn take_feature(feature: &geojson::Feature, map: &mut Map) -> Result<(), MissionError> {
     let Some(geometry) = &feature.geometry else { return Ok(()) };
     let name = feature.property("name").and_then(serde_json::Value::as_str);
     if let (true, GeometryValue::Point { coordinates }) =
         (name.is_some_and(|name| name.eq_ignore_ascii_case("home")), &geometry.value)
     {
         let altitude = coordinates.as_slice().get(2).copied().unwrap_or(0.0);
-        mission.home = Some(Home { latitude: coordinates[1], longitude: coordinates[0], altitude });
+        map.home = Some(Home { latitude: coordinates[1], longitude: coordinates[0], altitude });
         return Ok(());
     }
-    take_json(&geometry.value, mission)
+    take_json(&geometry.value, map)
 }
 
-fn take_json(geometry: &GeometryValue, mission: &mut Mission) -> Result<(), MissionError> {
+fn take_json(geometry: &GeometryValue, map: &mut Map) -> Result<(), MissionError> {
     let item = |position: &geojson::Position| match *position.as_slice() {
-        [longitude, latitude, altitude, ..] => {
-            Ok(Item::at(Spot::Earth([latitude, longitude]), Height::Amsl(altitude)))
-        }
+        [longitude, latitude, altitude, ..] => Ok((Spot::Earth([latitude, longitude]), Height::Amsl(altitude))),
         _ => Err(MissionError("a position without its third number, the height".to_owned())),
     };
     match geometry {
-        GeometryValue::Point { coordinates } => mission.items.push(item(coordinates)?),
+        GeometryValue::Point { coordinates } => map.points.push(item(coordinates)?),
         GeometryValue::LineString { coordinates } | GeometryValue::MultiPoint { coordinates } => {
             for position in coordinates {
-                mission.items.push(item(position)?);
+                map.points.push(item(position)?);
             }
         }
         GeometryValue::MultiLineString { coordinates } => {
             for position in coordinates.iter().flatten() {
-                mission.items.push(item(position)?);
+                map.points.push(item(position)?);
             }
         }
         GeometryValue::Polygon { coordinates } => {
             let outer = coordinates.first().into_iter().flatten();
-            let corners = outer.map(|position| Spot::Earth([position[1], position[0]])).collect();
-            mission.regions.push(Region { is_inside: true, edge: polygon_of(corners) });
+            let corners = outer.map(|position| [position[1], position[0]]).collect();
+            map.inside.push(polygon_of(corners));
         }
         GeometryValue::GeometryCollection { geometries } => {
-            geometries.iter().try_for_each(|geometry| take_json(&geometry.value, mission))?;
+            geometries.iter().try_for_each(|geometry| take_json(&geometry.value, map))?;
         }
-        other => mission.notes.push(format!("{}: passed over", other.type_name())),
+        other => map.notes.push(format!("{}: passed over", other.type_name())),
     }
     Ok(())
 }

@@ -1,111 +1,227 @@
-//! Missions as MAVLink has them: QGroundControl's plans, and files of waypoints.
+//! Missions as MAVLink has them, QGroundControl's plans and files of waypoints: read into the items
+//! that a ground station sends of them, and these as the flight program reads them.
 
+use autopilot::{Course, DEGREES, Fence, ITEMS, Item, Kind, METRES, Plan, Refusal, Setting, Settings};
+use controller::{FenceEdge, Knot, Route, RouteTable, Run, Waypoint};
+use link::dialect::{MavCmd, MavFrame, MavMissionResult};
 use serde_json::Value;
 
-use super::{Edge, Height, Home, Item, Mission, MissionError, Region, Spot};
+use super::{Defaults, Home, Local, LocalEdge, MissionError, NO_HOME, NO_TERRAIN, placed};
 
-/// An item of MAVLink's mission protocol.
-struct Command {
+/// Frames of heights above the ground, which no vehicle takes.
+const TERRAIN: [u8; 2] = [10, 11];
+/// Corners and circles of a fence, at most.
+const CORNERS: usize = 4096;
+/// Knots of a route, at most.
+const MOST_KNOTS: usize = 4_000_000;
+
+/// A mission and its fence as they are sent.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Items {
+    /// The home, where the file says it.
+    pub home: Option<Home>,
+    /// In the order flown.
+    pub mission: Vec<Item>,
+    /// What the file calls each of those.
+    numbers: Vec<u64>,
+    /// One after the other.
+    pub fence: Vec<Item>,
+    /// What the file calls each of those.
+    shapes: Vec<String>,
+    /// What is not sent.
+    notes: Vec<String>,
+}
+
+/// An item's numbers as files have them.
+struct Line {
     command: u64,
     frame: u64,
     params: [f64; 7],
 }
 
-// MAV_CMD.
-const WAYPOINT: u64 = 16;
-const LOITER_UNLIMITED: u64 = 17;
-const LOITER_TIME: u64 = 19;
-const RETURN_TO_LAUNCH: u64 = 20;
-const LAND: u64 = 21;
-const TAKE_OFF: u64 = 22;
-const SPLINE_WAYPOINT: u64 = 82;
-const DELAY: u64 = 93;
-/// The last of the commands that move the vehicle.
-const LAST_NAVIGATION: u64 = 95;
-const JUMP: u64 = 177;
-const CHANGE_SPEED: u64 = 178;
-
-/// Takes a mission's items in, one after the other.
-#[derive(Default)]
-struct Reader {
-    mission: Mission,
-    /// As of the last change of speed.
-    speed: Option<f64>,
-}
-
-impl Reader {
-    fn take(&mut self, number: usize, command: &Command) -> Result<(), MissionError> {
-        let Command { command, frame, params: [first, second, _, heading, x, y, z] } = *command;
-        let error = |message: String| Err(MissionError(format!("item {number}: {message}")));
-        let mut item = match command {
-            WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | LAND | TAKE_OFF | SPLINE_WAYPOINT => {
-                let height = match frame {
-                    0 | 5 => Height::Amsl(z),
-                    3 | 6 => Height::Relative(z),
-                    1 => Height::Relative(-z),
-                    10 | 11 => Height::Terrain(z),
-                    other => return error(format!("MAV_FRAME {other} is not known: 0, 1, 3, 5, 6, 10 and 11 are")),
-                };
-                if !z.is_finite() && command != LAND {
-                    return error("it has no height".to_owned());
-                }
-                let is_placed = x.is_finite() && y.is_finite() && (x, y) != (0.0, 0.0);
-                let spot = match (is_placed, frame, self.mission.items.is_empty()) {
-                    (_, 1, _) => Spot::Local([x, y]),
-                    (true, ..) => Spot::Earth([x, y]),
-                    (false, _, true) => Spot::Home,
-                    (false, _, false) => Spot::Same,
-                };
-                Item::at(spot, height)
-            }
-            RETURN_TO_LAUNCH => Item::at(Spot::Home, Height::Same),
-            DELAY => Item { stop: Some(first.max(0.0)), ..Item::at(Spot::Same, Height::Same) },
-            CHANGE_SPEED => {
-                if second > 0.0 {
-                    self.speed = Some(second);
-                    if let Some(last) = self.mission.items.last_mut() {
-                        last.speed = Some(second);
-                    }
-                }
-                return Ok(());
-            }
-            JUMP => return error("DO_JUMP: a route has no jumps; laps are told by `end`".to_owned()),
-            other if other <= LAST_NAVIGATION => {
-                return error(format!(
-                    "MAV_CMD {other} moves the vehicle in a way that no route can: 16, 17, 19, 20, 21, 22, 82 and 93 can be"
-                ));
-            }
-            other => {
-                self.mission
-                    .notes
-                    .push(format!("item {number}: MAV_CMD {other} does not move the payload: passed over"));
-                return Ok(());
-            }
-        };
-        match command {
-            WAYPOINT | SPLINE_WAYPOINT if first > 0.0 => item.stop = Some(first),
-            LOITER_TIME => item.stop = Some(first.max(0.0)),
-            LOITER_UNLIMITED => item.stop = Some(f64::INFINITY),
-            // The vehicle comes down by itself: the route ends above.
-            LAND => {
-                item.height = Height::Same;
-                self.mission.notes.push(format!("item {number}: the route ends above the place to land"));
-            }
-            _ => {}
-        }
-        item.is_smooth = command == SPLINE_WAYPOINT;
-        // Of take-off and landing it is the vehicle's, not the route's.
-        let has_heading = matches!(command, WAYPOINT | LOITER_TIME | LOITER_UNLIMITED | SPLINE_WAYPOINT);
-        item.heading = Some(heading).filter(|heading| has_heading && heading.is_finite() && *heading != 0.0);
-        item.speed = self.speed;
-        self.mission.items.push(item);
+impl Items {
+    /// Takes the next item in, which the file calls `number`.
+    fn take(&mut self, number: u64, line: &Line) -> Result<(), MissionError> {
+        let item = line.item().map_err(|error| MissionError(format!("item {number}: {error}")))?;
+        self.mission.push(item);
+        self.numbers.push(number);
         Ok(())
+    }
+
+    fn take_fence(&mut self, command: MavCmd, param1: f64, [latitude, longitude]: [f64; 2], name: String) -> Done {
+        let frame = MavFrame::MAV_FRAME_GLOBAL as u64;
+        let params = [param1, 0.0, 0.0, 0.0, latitude, longitude, 0.0];
+        let item = Line { command: command as u64, frame, params }.item();
+        self.fence.push(item.map_err(|error| MissionError(format!("{name}: {error}")))?);
+        self.shapes.push(name);
+        Ok(())
+    }
+
+    /// Has jumps lead to items by their order, as they are sent, instead of by what the file calls
+    /// them.
+    fn resolve_jumps(&mut self, names: &[u64]) -> Done {
+        for (item, number) in self.mission.iter_mut().zip(&self.numbers) {
+            if item.command == MavCmd::MAV_CMD_DO_JUMP as u16 {
+                let [to, ..] = &mut item.params;
+                let found = names.iter().position(|&name| name as f32 == *to);
+                let found =
+                    found.ok_or_else(|| MissionError(format!("item {number}: jumps to {to}, which is none")))?;
+                *to = found as f32;
+            }
+        }
+        Ok(())
+    }
+
+    /// The mission in N, as [`Mission::local`](super::Mission::local).
+    pub(super) fn local(&self, home: Option<Home>, terrain: Option<f64>, defaults: &Defaults) -> Read<Local> {
+        let home = home.or(self.home).map(placed).transpose()?;
+        let mut notes = self.notes.clone();
+        let mission = self.about_sea(terrain, &mut notes)?;
+        let mut settings = Settings::default();
+        for (setting, value) in
+            [(Setting::MISSION_SPEED, defaults.speed), (Setting::MISSION_CORNER, defaults.corner_m)]
+        {
+            settings.set(setting, value as f32).map_err(MissionError::new)?;
+        }
+        let mut waypoints =
+            vec![Waypoint { point: [0.0; 3], corner: None, speed: 0.0, yaw: None, stop: None }; mission.len() + 1];
+        let mut numbers = vec![0; waypoints.len()];
+        let named = |refusal: Refusal| self.named(&refusal);
+        let plan = Plan::read(&mission, home.as_ref(), &settings, &mut waypoints, &mut numbers).map_err(named)?;
+        let mut fence = Box::new(Fence::<CORNERS>::new());
+        fence.lay(&self.fence, home.as_ref()).map_err(named)?;
+        let (table, marks) = laid(&plan).map_err(named)?;
+        let mut route = Route::new(table).map_err(MissionError::new)?;
+
+        // What depends on the vehicle is said, and not refused here.
+        for (what, count) in [("mission", mission.len()), ("fence", self.fence.len())] {
+            if count > ITEMS {
+                notes.push(format!("{what}: {count} items: a vehicle takes at most {ITEMS}"));
+            }
+        }
+        if let Err(refusal) = fence.allows(&mut route, &marks, &settings) {
+            let margin = settings.get(Setting::FENCE_MARGIN);
+            let rod = settings.rig().get(rig::parameter!("VEH_ROD"));
+            let why = self.named(&refusal);
+            notes.push(format!("{why}: a vehicle refuses the mission with FNC_MARGIN {margin} and VEH_ROD {rod}"));
+        }
+        notes.extend(self.mission.iter().zip(&self.numbers).filter(|(item, _)| item.is_for_camera()).map(
+            |(item, number)| format!("item {number}: command {} does not move the load: passed over", item.command),
+        ));
+        let mut course = *plan.course();
+        if defaults.is_closed && !course.is_closed {
+            if course != Course::default() {
+                return Err(MissionError("--closed, but the mission says itself how it ends".to_owned()));
+            }
+            course.is_closed = true;
+        }
+        let waypoints = plan.waypoints().iter().map(in_f64).collect();
+        let regions = fence.regions(&settings).map(|region| (region.is_inside, edge(&region.edge))).collect();
+        Ok(Local { home, waypoints, course, regions, notes })
+    }
+
+    /// The mission with heights above the terrain counted from the sea.
+    fn about_sea(&self, terrain: Option<f64>, notes: &mut Vec<String>) -> Read<Vec<Item>> {
+        let mut mission = self.mission.clone();
+        for (item, number) in mission.iter_mut().zip(&self.numbers).filter(|(item, _)| TERRAIN.contains(&item.frame))
+        {
+            let ground = terrain.ok_or_else(|| MissionError(format!("item {number}: {NO_TERRAIN}")))?;
+            item.frame = MavFrame::MAV_FRAME_GLOBAL as u8;
+            item.z = (f64::from(item.z) + ground) as f32;
+            notes.push(format!("item {number}: its height is above the terrain: a vehicle refuses the mission"));
+        }
+        Ok(mission)
+    }
+
+    /// A refusal by what the file calls the item, and what could be done.
+    fn named(&self, refusal: &Refusal) -> MissionError {
+        let of = match refusal.item {
+            Some((Kind::Mission, index)) => {
+                format!("item {}: ", self.numbers.get(usize::from(index)).copied().unwrap_or_default())
+            }
+            Some((Kind::Fence, index)) => {
+                format!("{}: ", self.shapes.get(usize::from(index)).map_or("fence", String::as_str))
+            }
+            None => String::new(),
+        };
+        let text = &refusal.text;
+        MissionError(match refusal.result {
+            MavMissionResult::MAV_MISSION_ERROR => format!("{of}{NO_HOME}"),
+            MavMissionResult::MAV_MISSION_UNSUPPORTED => {
+                let known = Item::COMMANDS.map(|command| command.to_string()).join(", ");
+                format!("{of}{text}: {known} are, and a camera's are passed over")
+            }
+            MavMissionResult::MAV_MISSION_UNSUPPORTED_FRAME => {
+                let known = Item::FRAMES.map(|frame| frame.to_string()).join(", ");
+                format!("{of}{text}: {known} are")
+            }
+            _ => format!("{of}{text}"),
+        })
     }
 }
 
-/// A file of waypoints, `QGC WPL 110`: twelve fields a line. Its first is the home.
-pub fn waypoints(text: &str) -> Result<Mission, MissionError> {
-    let mut reader = Reader::default();
+type Read<T> = Result<T, MissionError>;
+type Done = Read<()>;
+type Table = RouteTable<Vec<Knot<f32>>, Vec<Run<f32>>>;
+
+/// The route's table, and where it passes its items.
+fn laid(plan: &Plan<'_>) -> Result<(Table, Vec<autopilot::Mark>), Refusal> {
+    let mut runs = vec![Run::default(); plan.waypoints().len() + 1];
+    let mut most = 32 * runs.len() + 256;
+    loop {
+        let (mut knots, mut marks) = (vec![Knot::default(); most], Vec::new());
+        match plan.build(&mut knots, &mut runs, |mark| marks.push(mark)) {
+            Ok(built) => {
+                knots.truncate(built.knots);
+                runs.truncate(built.runs);
+                return Ok((RouteTable { knots, runs }, marks));
+            }
+            Err(Refusal { result: MavMissionResult::MAV_MISSION_NO_SPACE, .. }) if most < MOST_KNOTS => most *= 4,
+            Err(refusal) => return Err(refusal),
+        }
+    }
+}
+
+fn in_f64(&Waypoint { point, corner, speed, yaw, stop }: &Waypoint<f32>) -> Waypoint<f64> {
+    Waypoint {
+        point: point.map(f64::from),
+        corner: corner.map(f64::from),
+        speed: speed.into(),
+        yaw: yaw.map(f64::from),
+        stop: stop.map(f64::from),
+    }
+}
+
+fn edge(edge: &FenceEdge<'_, f32>) -> LocalEdge {
+    match *edge {
+        FenceEdge::Polygon(corners) => {
+            LocalEdge::Polygon(corners.iter().map(|corner| corner.map(f64::from)).collect())
+        }
+        FenceEdge::Circle(center, radius) => LocalEdge::Circle(center.map(f64::from), radius.into()),
+    }
+}
+
+impl Line {
+    /// As it is sent: places in whole steps, and none by the largest number.
+    fn item(&self) -> Result<Item, String> {
+        let Self { command, frame, params: [p1, p2, p3, p4, x, y, z] } = *self;
+        let command = u16::try_from(command).map_err(|_| format!("{command} is no MAV_CMD"))?;
+        let frame = u8::try_from(frame).map_err(|_| format!("{frame} is no MAV_FRAME"))?;
+        let step = if frame == MavFrame::MAV_FRAME_LOCAL_NED as u8 { METRES } else { DEGREES };
+        let steps = |value: f64| match (value / step).round() {
+            none if none.is_nan() => Ok(i32::MAX),
+            steps if steps.abs() < f64::from(i32::MAX) => Ok(steps as i32),
+            _ => Err(format!("{value} is too far: within ±{:.0}", f64::from(i32::MAX) * step)),
+        };
+        let params = [p1, p2, p3, p4].map(|param| param as f32);
+        Ok(Item { command, frame, current: 0, autocontinue: 1, params, x: steps(x)?, y: steps(y)?, z: z as f32 })
+    }
+}
+
+/// A file of waypoints, `QGC WPL 110`: twelve fields a line. Its first is the home, which is not
+/// sent.
+pub fn waypoints(text: &str) -> Read<Items> {
+    let mut items = Items::default();
     let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let header = lines.next().map_or("", |(_, line)| line.trim());
     if header != "QGC WPL 110" {
@@ -121,53 +237,73 @@ pub fn waypoints(text: &str) -> Result<Mission, MissionError> {
         let fields: [f64; 12] =
             fields.try_into().map_err(|_| error(format!("{count} fields where a waypoint has 12")))?;
         let [index, _, frame, command, p1, p2, p3, p4, latitude, longitude, altitude, _] = fields;
+        let whole = |name: &str, value: f64| {
+            let is_whole = value.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(&value);
+            if is_whole { Ok(value as u64) } else { Err(error(format!("{name} {value} is not whole, 0 to 65535"))) }
+        };
         let params = [p1, p2, p3, p4, latitude, longitude, altitude];
-        let command = Command { command: command as u64, frame: frame as u64, params };
-        if index == 0.0 && command.command == WAYPOINT && command.frame == 0 {
+        let line = Line { command: whole("command", command)?, frame: whole("frame", frame)?, params };
+        let index = whole("index", index)?;
+        if index == 0 && line.command == MavCmd::MAV_CMD_NAV_WAYPOINT as u64 && line.frame == 0 {
             if (latitude, longitude) != (0.0, 0.0) {
-                reader.mission.home = Some(Home { latitude, longitude, altitude });
+                items.home = Some(Home { latitude, longitude, altitude });
             }
             continue;
         }
-        reader.take(index as usize, &command)?;
+        items.take(index, &line)?;
     }
-    Ok(reader.mission)
+    let names = items.numbers.clone();
+    items.resolve_jumps(&names)?;
+    Ok(items)
 }
 
 /// A plan of QGroundControl.
-pub fn plan(value: &Value) -> Result<Mission, MissionError> {
+pub fn plan(value: &Value) -> Read<Items> {
     let mission = value.get("mission").ok_or_else(|| MissionError("the plan has no mission".to_owned()))?;
-    let mut reader = Reader::default();
+    let mut items = Items::default();
     if let Some([latitude, longitude, altitude]) = numbers(mission.get("plannedHomePosition")) {
-        reader.mission.home = Some(Home { latitude, longitude, altitude });
+        items.home = Some(Home { latitude, longitude, altitude });
     }
-    reader.mission.speed = mission.get("hoverSpeed").and_then(Value::as_f64).filter(|speed| *speed > 0.0);
-    take_items(&mut reader, mission.get("items"), &mut 0)?;
-    fences(value.get("geoFence"), &mut reader.mission)?;
-    Ok(reader.mission)
+    let mut names = Vec::new();
+    take_items(&mut items, &mut names, mission.get("items"))?;
+    items.resolve_jumps(&names)?;
+    fences(value.get("geoFence"), &mut items)?;
+    // Stations reckon the time with it, and send it to no vehicle.
+    if let Some(speed) = mission.get("hoverSpeed").and_then(Value::as_f64) {
+        items
+            .notes
+            .push(format!("hoverSpeed {speed} m/s is not sent: a DO_CHANGE_SPEED, or MIS_SPEED, sets a speed"));
+    }
+    let rally = value.get("rallyPoints").and_then(|rally| rally.get("points")).and_then(Value::as_array);
+    if rally.is_some_and(|points| !points.is_empty()) {
+        items.notes.push("rally points: passed over; a vehicle refuses them".to_owned());
+    }
+    Ok(items)
 }
 
-fn take_items(reader: &mut Reader, items: Option<&Value>, number: &mut usize) -> Result<(), MissionError> {
-    for item in items.and_then(Value::as_array).into_iter().flatten() {
-        let error = |number: usize, message: &str| MissionError(format!("item {number}: {message}"));
+/// Takes items in, with the `names` that jumps have for them.
+fn take_items(items: &mut Items, names: &mut Vec<u64>, given: Option<&Value>) -> Done {
+    for item in given.and_then(Value::as_array).into_iter().flatten() {
+        // Stations count the home as 0.
+        let number = items.mission.len() as u64 + 1;
+        let error = |message: &str| MissionError(format!("item {number}: {message}"));
         match item.get("type").and_then(Value::as_str) {
             Some("SimpleItem") => {
-                *number += 1;
                 let whole = |name: &str| item.get(name).and_then(Value::as_u64);
                 let (Some(command), Some(frame)) = (whole("command"), whole("frame")) else {
-                    return Err(error(*number, "it has no command or no frame"));
+                    return Err(error("it has no command or no frame"));
                 };
                 let mut params = [f64::NAN; 7];
-                let given =
-                    item.get("params").and_then(Value::as_array).ok_or_else(|| error(*number, "no params"))?;
+                let given = item.get("params").and_then(Value::as_array).ok_or_else(|| error("no params"))?;
                 if given.len() != params.len() {
-                    return Err(error(*number, &format!("{} params where an item has 7", given.len())));
+                    return Err(error(&format!("{} params where an item has 7", given.len())));
                 }
                 for (param, given) in params.iter_mut().zip(given) {
                     // null is a number that is not given.
                     *param = given.as_f64().unwrap_or(f64::NAN);
                 }
-                reader.take(*number, &Command { command, frame, params })?;
+                names.push(whole("doJumpId").unwrap_or(number));
+                items.take(number, &Line { command, frame, params })?;
             }
             Some("ComplexItem") => {
                 // A survey holds the items that it is flown by.
@@ -175,33 +311,43 @@ fn take_items(reader: &mut Reader, items: Option<&Value>, number: &mut usize) ->
                 let inner = inner.or_else(|| item.get("Items"));
                 let kind = item.get("complexItemType").and_then(Value::as_str).unwrap_or("a complex item");
                 if inner.is_none() {
-                    return Err(error(*number + 1, &format!("{kind} holds no items to fly by")));
+                    return Err(error(&format!("{kind} holds no items to fly by")));
                 }
-                take_items(reader, inner, number)?;
+                take_items(items, names, inner)?;
             }
-            other => {
-                return Err(error(*number + 1, &format!("its type is {other:?}: SimpleItem or ComplexItem")));
-            }
+            other => return Err(error(&format!("its type is {other:?}: SimpleItem or ComplexItem"))),
         }
     }
     Ok(())
 }
 
-fn fences(fence: Option<&Value>, mission: &mut Mission) -> Result<(), MissionError> {
-    let list = |name: &str| fence.and_then(|fence| fence.get(name)).and_then(Value::as_array).into_iter().flatten();
+fn fences(fence: Option<&Value>, items: &mut Items) -> Done {
+    let list = |name: &str| {
+        let shapes = fence.and_then(|fence| fence.get(name)).and_then(Value::as_array).into_iter().flatten();
+        shapes.zip(1..)
+    };
     let is_inside = |shape: &Value| shape.get("inclusion").and_then(Value::as_bool).unwrap_or(true);
     let unclear = || MissionError("geoFence: a shape that is no polygon of corners and no circle".to_owned());
-    for shape in list("polygons") {
+    for (shape, number) in list("polygons") {
+        let command = match is_inside(shape) {
+            true => MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+            false => MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
+        };
         let corners = shape.get("polygon").and_then(Value::as_array).ok_or_else(unclear)?;
-        let corner = |corner: &Value| numbers(Some(corner)).map(Spot::Earth).ok_or_else(unclear);
-        let edge = Edge::Polygon(corners.iter().map(corner).collect::<Result<_, _>>()?);
-        mission.regions.push(Region { is_inside: is_inside(shape), edge });
+        for corner in corners {
+            let place = numbers(Some(corner)).ok_or_else(unclear)?;
+            items.take_fence(command, corners.len() as f64, place, format!("geoFence polygon {number}"))?;
+        }
     }
-    for shape in list("circles") {
+    for (shape, number) in list("circles") {
+        let command = match is_inside(shape) {
+            true => MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
+            false => MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION,
+        };
         let circle = shape.get("circle").ok_or_else(unclear)?;
-        let center = numbers(circle.get("center")).map(Spot::Earth).ok_or_else(unclear)?;
+        let center = numbers(circle.get("center")).ok_or_else(unclear)?;
         let radius = circle.get("radius").and_then(Value::as_f64).ok_or_else(unclear)?;
-        mission.regions.push(Region { is_inside: is_inside(shape), edge: Edge::Circle(center, radius) });
+        items.take_fence(command, radius, center, format!("geoFence circle {number}"))?;
     }
     Ok(())
 }

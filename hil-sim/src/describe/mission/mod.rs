@@ -1,20 +1,22 @@
 //! Missions of ground stations and maps, as waypoints of N.
 //!
 //! A file says where on the earth, and above what; [`Mission::local`] makes metres of it about a
-//! home, where N has its origin, by [`Home::local`], as the flight program does of the missions
-//! that ground stations send it.
+//! home, where N has its origin, by [`Home::local`]. What MAVLink's files hold are the items that a
+//! ground station sends: the flight program itself reads them, so that what is made of such a file
+//! is what a vehicle flies of it.
 
 pub mod columns;
 pub mod csv;
-mod map;
-mod mavlink;
+pub mod map;
+pub mod mavlink;
 mod written;
 
-pub use written::{Defaults, c, rust, toml};
+pub use written::{c, rust, toml};
 
 pub use link::Home;
 
-use controller::Vector3;
+use autopilot::{Course, Setting, Settings};
+use controller::Waypoint;
 
 /// The home that LAT,LON,ALT says, as a command line has it: degrees, and m above the sea.
 ///
@@ -33,87 +35,33 @@ pub fn home(text: &str) -> Result<Home, String> {
     Ok(Home { latitude, longitude, altitude })
 }
 
-/// Where a point of a mission is, seen from above.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spot {
-    /// Latitude and longitude, degrees.
-    Earth([f64; 2]),
-    /// n1 and n2, m.
-    Local([f64; 2]),
-    /// Above the home.
-    Home,
-    /// Above or below the point before.
-    Same,
-}
-
-/// Above what a point of a mission is, m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Height {
-    /// The sea.
-    Amsl(f64),
-    /// The home.
-    Relative(f64),
-    /// The ground under it.
-    Terrain(f64),
-    /// As high as the point before.
-    Same,
-}
-
-/// A point of a mission.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Item {
-    /// Where.
-    pub spot: Spot,
-    /// How high.
-    pub height: Height,
-    /// How long to rest there, s; infinite: until told to go on.
-    pub stop: Option<f64>,
-    /// Passed on a smooth curve rather than by a corner.
-    pub is_smooth: bool,
-    /// From there on, m/s.
-    pub speed: Option<f64>,
-    /// Heading there, degrees from north.
-    pub heading: Option<f64>,
-}
-
-impl Item {
-    /// A point that is passed.
-    fn at(spot: Spot, height: Height) -> Self {
-        Self { spot, height, stop: None, is_smooth: false, speed: None, heading: None }
-    }
-}
-
-/// A region that the mission stays in, or keeps out of.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Region {
-    /// To stay in; else to keep out.
-    pub is_inside: bool,
-    /// Its edge.
-    pub edge: Edge,
-}
-
-/// The edge of a region, seen from above.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Edge {
-    /// By its corners.
-    Polygon(Vec<Spot>),
-    /// By its centre and radius, m.
-    Circle(Spot, f64),
-}
-
 /// A mission as its file has it.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mission {
-    /// The home, where the file says it.
-    pub home: Option<Home>,
-    /// In the order flown.
-    pub items: Vec<Item>,
-    /// Fences.
-    pub regions: Vec<Region>,
-    /// The speed where items say none, m/s.
-    pub speed: Option<f64>,
-    /// What was passed over.
-    pub notes: Vec<String>,
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mission {
+    /// Items of MAVLink's, which mean what they mean to the flight program.
+    Items(mavlink::Items),
+    /// Lines and areas on a map, or points of a table.
+    Map(map::Map),
+}
+
+/// What a mission's file does not say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defaults {
+    /// m/s.
+    pub speed: f64,
+    /// m.
+    pub corner_m: f64,
+    /// The last waypoint leads back to the first.
+    pub is_closed: bool,
+}
+
+impl Default for Defaults {
+    /// As the flight program has them.
+    fn default() -> Self {
+        let settings = Settings::default();
+        let [speed, corner_m] = [Setting::MISSION_SPEED, Setting::MISSION_CORNER].map(|number| settings.get(number));
+        Self { speed: speed.into(), corner_m: corner_m.into(), is_closed: false }
+    }
 }
 
 /// A mission that can't be read, or not be placed.
@@ -127,24 +75,19 @@ impl MissionError {
     }
 }
 
-/// A waypoint in N.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LocalItem {
-    /// m.
-    pub point: [f64; 3],
-    /// The item, for all else.
-    pub item: Item,
-}
-
 /// A mission in N.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Local {
     /// The home, if there is one.
     pub home: Option<Home>,
     /// Waypoints, no two in a row at the same place.
-    pub items: Vec<LocalItem>,
-    /// Regions, their edges local.
+    pub waypoints: Vec<Waypoint<f64>>,
+    /// How it ends.
+    pub course: Course,
+    /// Regions to stay in; or else, not to enter.
     pub regions: Vec<(bool, LocalEdge)>,
+    /// What was passed over, and what a vehicle would refuse.
+    pub notes: Vec<String>,
 }
 
 /// An edge in N, m.
@@ -156,9 +99,6 @@ pub enum LocalEdge {
     Circle([f64; 2], f64),
 }
 
-/// Points nearer than this are one, m: no leg is shorter.
-const SAME: f64 = controller::SHORTEST_LEG;
-
 /// Reads a mission: a QGroundControl plan, MAVLink waypoints (`QGC WPL 110`), KML, GPX, GeoJSON, or
 /// a table. What it is shows in its text.
 ///
@@ -167,40 +107,22 @@ const SAME: f64 = controller::SHORTEST_LEG;
 pub fn read(file: &str, text: &str) -> Result<Mission, MissionError> {
     let text = text.trim_start_matches('\u{feff}');
     let begin: String = text.trim_start().chars().take(2000).collect();
-    let mission = if begin.starts_with("QGC WPL") {
-        mavlink::waypoints(text)
+    if begin.starts_with("QGC WPL") {
+        mavlink::waypoints(text).map(Mission::Items)
     } else if begin.starts_with('<') && begin.contains("<gpx") {
-        map::gpx(text)
+        map::gpx(text).map(Mission::Map)
     } else if begin.starts_with('<') {
-        map::kml(text)
+        map::kml(text).map(Mission::Map)
     } else if begin.starts_with(['{', '[']) {
         let value: serde_json::Value = serde_json::from_str(text).map_err(MissionError::new)?;
         if value.get("fileType").is_some_and(|kind| kind == "Plan") {
-            mavlink::plan(&value)
+            mavlink::plan(&value).map(Mission::Items)
         } else {
-            map::geojson(text)
+            map::geojson(text).map(Mission::Map)
         }
     } else {
-        table(file, text)
-    }?;
-    if mission.items.len() < 2 {
-        let count = mission.items.len();
-        return Err(MissionError(format!("{count} points to fly to where a route needs at least 2")));
+        map::table(file, text).map(Mission::Map)
     }
-    Ok(mission)
-}
-
-fn table(file: &str, text: &str) -> Result<Mission, MissionError> {
-    // Its own errors name the file.
-    let within = |error: csv::PointsError| {
-        MissionError(error.to_string().trim_start_matches(file).trim_start_matches(':').trim_start().to_owned())
-    };
-    let csv::Rows { columns, rows } = csv::rows(file, text, 100_000).map_err(within)?;
-    let items = rows.iter().map(|(_, point)| {
-        let (spot, height) = columns.spot(point);
-        Item::at(spot, height)
-    });
-    Ok(Mission { items: items.collect(), notes: vec![format!("columns: {columns}")], ..Mission::default() })
 }
 
 impl Mission {
@@ -208,90 +130,35 @@ impl Mission {
     /// ground, that is `terrain` m above the sea everywhere.
     ///
     /// # Errors
-    /// There is no home where one is needed, or no terrain; or a place is none on the earth, or
-    /// farther than 100 km away.
-    pub fn local(&self, home: Option<Home>, terrain: Option<f64>) -> Result<Local, MissionError> {
-        let home = home.or(self.home);
-        let needed = || {
-            home.ok_or_else(|| {
-                MissionError("the file says where on the earth, but no home: give --home LAT,LON,ALT".to_owned())
-            })
-        };
-        let level = |spot: Spot, altitude: f64, last: [f64; 2]| -> Result<[f64; 2], MissionError> {
-            match spot {
-                Spot::Local(place) => Ok(place),
-                Spot::Home => Ok([0.0; 2]),
-                Spot::Same => Ok(last),
-                Spot::Earth(place) => from_home(needed()?, place, altitude),
-            }
-        };
-        let mut items: Vec<LocalItem> = Vec::new();
-        let (mut last, mut up) = ([0.0; 2], 0.0);
-        for (index, item) in self.items.iter().enumerate() {
-            let named = |error: MissionError| MissionError(format!("point {}: {error}", index + 1));
-            up = match item.height {
-                Height::Relative(up) => up,
-                Height::Same => up,
-                Height::Amsl(altitude) => altitude - needed().map_err(named)?.altitude,
-                Height::Terrain(above) => {
-                    let ground = terrain.ok_or_else(|| {
-                        named(MissionError(
-                            "its height is above the terrain, which is not known: give --terrain METRES above the sea"
-                                .to_owned(),
-                        ))
-                    })?;
-                    ground + above - needed().map_err(named)?.altitude
-                }
-            };
-            let altitude = home.map_or(0.0, |home| home.altitude) + up;
-            last = level(item.spot, altitude, last).map_err(named)?;
-            let point = [last[0], last[1], 0.0 - up];
-            match items.last_mut().filter(|before| near(&before.point, &point)) {
-                // What is done at the same place is done at one waypoint.
-                Some(before) => {
-                    let stop = [before.item.stop, item.stop].into_iter().flatten().reduce(|a, b| a + b);
-                    let (speed, heading) = (item.speed.or(before.item.speed), item.heading.or(before.item.heading));
-                    before.item = Item { stop, speed, heading, ..before.item };
-                }
-                None => items.push(LocalItem { point, item: *item }),
-            }
-        }
-        let altitude = home.map_or(0.0, |home| home.altitude);
-        let edge = |region: &Region| {
-            let place = |spot: &Spot| level(*spot, altitude, [0.0; 2]);
-            let edge = match &region.edge {
-                Edge::Polygon(corners) => LocalEdge::Polygon(corners.iter().map(place).collect::<Result<_, _>>()?),
-                Edge::Circle(center, radius) => LocalEdge::Circle(place(center)?, *radius),
-            };
-            Ok((region.is_inside, edge))
-        };
-        let regions = self.regions.iter().map(edge).collect::<Result<_, MissionError>>()?;
-        Ok(Local { home, items, regions })
-    }
-}
-
-fn near(a: &[f64; 3], b: &[f64; 3]) -> bool {
-    let away = Vector3::from(*a) - Vector3::from(*b);
-    away.dot(&away) < SAME * SAME
-}
-
-/// n1 and n2 of a place of the earth, m.
-fn from_home(home: Home, [latitude, longitude]: [f64; 2], altitude: f64) -> Result<[f64; 2], MissionError> {
-    let is_place = |latitude: f64, longitude: f64| latitude.abs() <= 90.0 && longitude.abs() <= 180.0;
-    for (what, [latitude, longitude]) in [("", [latitude, longitude]), ("home ", [home.latitude, home.longitude])] {
-        if !is_place(latitude, longitude) {
-            return Err(MissionError(format!(
-                "{what}{latitude}, {longitude} is no latitude and longitude in degrees"
-            )));
+    /// There is no home where one is needed, or no terrain; a place is none on the earth, or farther
+    /// than 100 km away; or items make no route, by the first that is at fault.
+    pub fn local(
+        &self,
+        home: Option<Home>,
+        terrain: Option<f64>,
+        defaults: &Defaults,
+    ) -> Result<Local, MissionError> {
+        match self {
+            Self::Items(items) => items.local(home, terrain, defaults),
+            Self::Map(map) => map.local(home, terrain, defaults),
         }
     }
-    let [north, east] = home.local([latitude, longitude], altitude);
-    if north.hypot(east) > FURTHEST {
-        let away = 1e-3 * north.hypot(east);
-        return Err(MissionError(format!("{latitude}, {longitude} is {away:.0} km from home: at most 100")));
-    }
-    Ok([north, east])
 }
 
-/// From home, m.
-const FURTHEST: f64 = 1e5;
+/// Of a home that is missing.
+const NO_HOME: &str = "the file says where on the earth, but no home: give --home LAT,LON,ALT";
+/// Of a ground that is not known.
+const NO_TERRAIN: &str = "its height is above the terrain, which is not known: give --terrain METRES above the sea";
+
+/// A home that is one.
+fn placed(home: Home) -> Result<Home, MissionError> {
+    let Home { latitude, longitude, .. } = home;
+    if is_place([latitude, longitude]) {
+        return Ok(home);
+    }
+    Err(MissionError(format!("home {latitude}, {longitude} is no latitude and longitude in degrees")))
+}
+
+fn is_place([latitude, longitude]: [f64; 2]) -> bool {
+    latitude.abs() <= 90.0 && longitude.abs() <= 180.0
+}

@@ -4,19 +4,8 @@ use std::fmt::Write;
 
 use controller::{End, Knot, RoutePace, Run, Table, Waypoint};
 
-use super::{Home, Local, LocalEdge, LocalItem};
+use super::{Home, Local, LocalEdge};
 use crate::describe::course::RouteSpec;
-
-/// What a mission's file does not say.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Defaults {
-    /// m/s.
-    pub speed: f64,
-    /// m.
-    pub corner_m: f64,
-    /// The last waypoint leads back to the first.
-    pub is_closed: bool,
-}
 
 /// The law that the built-in routes are flown with, for a state that is known without delay.
 const CONTROLLER: &str = "[controller]
@@ -32,12 +21,12 @@ observer = { payload = 8.0, rod = 8.0, torque = 8.0 }
 
 /// A mission as a scenario that flies it, for `duration_s`, from rest at its beginning.
 #[must_use]
-pub fn toml(local: &Local, source: &str, defaults: &Defaults, duration_s: f64) -> String {
+pub fn toml(local: &Local, source: &str, duration_s: f64) -> String {
     let mut text = String::new();
-    let speeds: Vec<f64> = local.items.iter().map(|item| item.item.speed.unwrap_or(defaults.speed)).collect();
+    let Local { home, waypoints, course, regions, .. } = local;
     // Writing to a String does not fail.
     let _ = writeln!(text, "# From {source}.");
-    if let Some(Home { latitude, longitude, altitude }) = local.home {
+    if let Some(Home { latitude, longitude, altitude }) = home {
         let _ = writeln!(
             text,
             "# Home, the origin of N: {latitude}, {longitude} degrees, {altitude} m above the sea; heights count from there."
@@ -49,37 +38,16 @@ pub fn toml(local: &Local, source: &str, defaults: &Defaults, duration_s: f64) -
         format!("Route of {source}")
     );
     let _ = writeln!(text, "[path]\nkind = \"route\"\npoints = [");
-    for LocalItem { point, .. } in &local.items {
+    for Waypoint { point, .. } in waypoints {
         let _ = writeln!(text, "    {},", list(point));
     }
-    let _ = writeln!(text, "]\nclosed = {}", defaults.is_closed);
-    if local.items.iter().any(|item| item.item.is_smooth) {
-        let corner = |item: &LocalItem| match item.item.is_smooth {
-            true => "\"smooth\"".to_owned(),
-            false => number(defaults.corner_m),
-        };
-        let _ = writeln!(text, "corner_m = [{}]", joined(local.items.iter().map(corner)));
-    } else {
-        let _ = writeln!(text, "corner_m = {}", number(defaults.corner_m));
-    }
-    match speeds.iter().all(|speed| *speed == speeds[0]) {
-        true => {
-            let _ = writeln!(text, "speed = {}", number(speeds[0]));
-        }
-        false => {
-            let _ = writeln!(text, "speed = {}", list(&speeds));
-        }
-    }
-    let headings: Option<Vec<f64>> = local.items.iter().map(|item| item.item.heading.map(f64::to_radians)).collect();
-    match headings {
-        Some(headings) => {
-            let _ = writeln!(text, "yaw = {}", list(&headings));
-        }
-        None => {
-            let _ = writeln!(text, "yaw = \"tangent\"");
-        }
-    }
-    let stops = local.items.iter().enumerate().filter_map(|(index, item)| item.item.stop.map(|stop| (index, stop)));
+    let _ = writeln!(text, "]\nclosed = {}", course.is_closed);
+    let corner = |waypoint: &Waypoint<f64>| waypoint.corner.map_or("\"smooth\"".to_owned(), number);
+    let yaw = |waypoint: &Waypoint<f64>| waypoint.yaw.map_or("\"tangent\"".to_owned(), number);
+    let _ = writeln!(text, "corner_m = {}", each(waypoints.iter().map(corner)));
+    let _ = writeln!(text, "speed = {}", each(waypoints.iter().map(|waypoint| number(waypoint.speed))));
+    let _ = writeln!(text, "yaw = {}", each(waypoints.iter().map(yaw)));
+    let stops = waypoints.iter().enumerate().filter_map(|(index, waypoint)| Some((index, waypoint.stop?)));
     let stop = |(index, dwell): (usize, f64)| match dwell.is_finite() {
         true => format!("{{ index = {index}, dwell_s = {} }}", number(dwell)),
         false => format!("{{ index = {index} }}"),
@@ -88,10 +56,17 @@ pub fn toml(local: &Local, source: &str, defaults: &Defaults, duration_s: f64) -
     if !stops.is_empty() {
         let _ = writeln!(text, "stops = [{stops}]");
     }
+    if let End::Again(times) = course.end {
+        let _ = writeln!(text, "end = {{ again = {times} }}");
+    }
+    if course.lands {
+        // Home stands on it.
+        text.push_str("end = \"land\"\n\n[cable]\n\n[ground]\n");
+    }
     let _ = write!(text, "\n{CONTROLLER}");
-    if !local.regions.is_empty() {
-        let regions = |wanted: bool| {
-            let chosen = local.regions.iter().filter(|(is_inside, _)| *is_inside == wanted);
+    if !regions.is_empty() {
+        let those = |wanted: bool| {
+            let chosen = regions.iter().filter(|(is_inside, _)| *is_inside == wanted);
             joined(chosen.map(|(_, edge)| match edge {
                 LocalEdge::Polygon(corners) => {
                     format!("{{ polygon = [{}] }}", joined(corners.iter().map(|corner| list(corner))))
@@ -101,9 +76,18 @@ pub fn toml(local: &Local, source: &str, defaults: &Defaults, duration_s: f64) -
                 }
             }))
         };
-        let _ = writeln!(text, "\n[fence]\ninside = [{}]\noutside = [{}]", regions(true), regions(false));
+        let _ = writeln!(text, "\n[fence]\ninside = [{}]\noutside = [{}]", those(true), those(false));
     }
     text
+}
+
+/// One word if all are the same, and else their list.
+fn each(parts: impl Iterator<Item = String>) -> String {
+    let parts: Vec<String> = parts.collect();
+    match &parts[..] {
+        [first, rest @ ..] if rest.iter().all(|part| part == first) => first.clone(),
+        _ => format!("[{}]", parts.join(", ")),
+    }
 }
 
 fn joined(parts: impl Iterator<Item = String>) -> String {
@@ -121,11 +105,18 @@ fn list(values: &[f64]) -> String {
 
 /// The table in f32 as a Rust static, for flash: `Route::new(&ROUTE)`.
 #[must_use]
-pub fn rust(table: &impl Table<f64>, source: &str) -> String {
+pub fn rust(route: &RouteSpec, source: &str) -> String {
     let mut text = String::new();
+    let table = route.table();
     let (knots, runs) = (table.knots(), table.runs());
     let row = |numbers: &[f32]| joined(numbers.iter().map(|number| format!("{number:?}")));
     let _ = writeln!(text, "/// The route of {source}, in N, m.");
+    if route.end() != End::Stay {
+        let _ = writeln!(text, "/// Flown `with_end(End::{:?})`.", route.end());
+    }
+    if route.lands() {
+        text.push_str("/// Flown by a rig that is `landing_at_end()`.\n");
+    }
     let _ = writeln!(
         text,
         "pub static ROUTE: controller::RouteTable<[controller::Knot<f32>; {}], [controller::Run<f32>; {}]> =",

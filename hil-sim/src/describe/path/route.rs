@@ -185,10 +185,17 @@ fn usual_corners() -> CornerField {
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "neither a number, nor a list of them, nor \"tangent\", nor { x, y }")]
 enum YawField {
-    All(f64),
-    Each(Vec<f64>),
-    Tangent(Tangent),
+    All(Yaw),
+    Each(Vec<Yaw>),
     PointingAt(LineFields),
+}
+
+/// The heading at a waypoint.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(untagged, expecting = "neither a number nor \"tangent\"")]
+enum Yaw {
+    Fixed(f64),
+    Tangent(Tangent),
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -198,7 +205,7 @@ enum Tangent {
 }
 
 fn no_yaw() -> YawField {
-    YawField::All(0.0)
+    YawField::All(Yaw::Fixed(0.0))
 }
 
 #[derive(Deserialize)]
@@ -244,7 +251,7 @@ pub(super) fn parse<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<Rou
     }
     match &yaw {
         YawField::Each(each) => fits("yaw", each.len())?,
-        YawField::All(_) | YawField::Tangent(_) | YawField::PointingAt(_) => {}
+        YawField::All(_) | YawField::PointingAt(_) => {}
     }
     let pointing = match &yaw {
         YawField::PointingAt(LineFields { x, y }) => Some(all_within(&field("yaw"), [*x, *y], 1e5)?),
@@ -266,10 +273,13 @@ pub(super) fn parse<'de, V: Deserializer<'de>>(at: &str, value: V) -> Result<Rou
                 EachField::All(speed) => *speed,
                 EachField::Each(each) => each[index],
             },
-            yaw: match &yaw {
-                YawField::All(yaw) => Some(*yaw),
-                YawField::Each(each) => Some(each[index]),
-                YawField::Tangent(_) | YawField::PointingAt(_) => None,
+            yaw: match match &yaw {
+                YawField::All(yaw) => *yaw,
+                YawField::Each(each) => each[index],
+                YawField::PointingAt(_) => Yaw::Tangent(Tangent::Tangent),
+            } {
+                Yaw::Fixed(yaw) => Some(yaw),
+                Yaw::Tangent(_) => None,
             },
             stop: None,
         })
