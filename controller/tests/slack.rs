@@ -437,42 +437,46 @@ fn a_landing_is_as_slow_on_half_a_navigation() {
     }
 }
 
-/// For two seconds of following attitude or body rate is not measured: each is found from the
-/// other, and the UAV holds. An accelerometer that reads zeros changes nothing.
+/// For two or twenty seconds of following attitude or body rate is not measured, or the attitude
+/// stands still: each is found from the other, and the UAV holds. An accelerometer that reads zeros changes nothing.
 #[test]
-fn an_attitude_or_a_body_rate_that_is_lost_for_two_seconds_costs_no_height() {
-    type Wrong = fn(&mut State<f32>, &mut Vector3<f32>);
-    let no_attitude: Wrong = |state, _| state.attitude.fill(f32::NAN);
-    let no_body_rate: Wrong = |state, _| state.body_rate.fill(f32::NAN);
-    let no_specific_force: Wrong = |_, specific| specific.fill(0.0);
-    for (name, wrong, channel) in [
-        ("attitude", no_attitude, Some(Channel::Attitude)),
-        ("body rate", no_body_rate, Some(Channel::BodyRate)),
-        ("specific force", no_specific_force, None),
+fn an_attitude_or_a_body_rate_that_is_lost_costs_no_height() {
+    type Wrong = fn(&mut State<f32>, &State<f32>, &mut Vector3<f32>);
+    let no_attitude: Wrong = |state, _, _| state.attitude.fill(f32::NAN);
+    let no_body_rate: Wrong = |state, _, _| state.body_rate.fill(f32::NAN);
+    let no_specific_force: Wrong = |_, _, specific| specific.fill(0.0);
+    let old_attitude: Wrong = |state, then, _| state.attitude = then.attitude;
+    let (attitude, body_rate) = (Some(Channel::Attitude), Some(Channel::BodyRate));
+    for (name, wrong, channel, steps) in [
+        ("attitude", no_attitude, attitude, 1000),
+        ("attitude for 20 s", no_attitude, attitude, 10_000),
+        ("an attitude that stands still for 20 s", old_attitude, attitude, 10_000),
+        ("body rate", no_body_rate, body_rate, 1000),
+        ("specific force", no_specific_force, None, 1000),
     ] {
         let mut flight = hanging(PAPER, 10.0);
         for _ in 0..5000 {
             flight.step(Request::Follow);
         }
-        let height = flight.world.uav.position.z;
+        let (then, height) = (flight.state(), flight.world.uav.position.z);
         let mut lost = 0.0_f64;
         let mut last = None;
         let mut before = flight.world.uav.velocity;
-        for step in 0..16_000 {
+        for step in 0..steps + 15_000 {
             let (mut uav, mut state) = (flight.uav(), flight.state());
             let acceleration = (flight.world.uav.velocity - before) / PERIOD;
             before = flight.world.uav.velocity;
             let specific = flight.world.uav.attitude.transpose() * (acceleration - V::new(0.0, 0.0, 9.81));
             let mut specific: Vector3<f32> = specific.map(|a| a as f32);
-            if step < 1000 {
-                wrong(&mut state, &mut specific);
+            if step < steps {
+                wrong(&mut state, &then, &mut specific);
                 (uav.attitude, uav.body_rate) = (state.attitude, state.body_rate);
             }
             let measured = Measured { state: Some(&state), uav: Some(&uav), specific_force: Some(specific) };
             let output = flight.supervisor.step(measured, Request::Follow);
             flight.world.advance(&output.command);
             lost = lost.max(flight.world.uav.position.z - height);
-            if step == 999 {
+            if step == steps - 1 {
                 let mode = if channel.is_some() { Mode::Hold } else { Mode::Follow };
                 assert_eq!((output.mode, output.fault), (mode, channel.map(Fault::State)), "{name}");
             }

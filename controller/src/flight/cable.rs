@@ -3,7 +3,7 @@
 use model::{Real, State, Vehicle, dynamics::lambda, is_within};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::sampled::pull::Pull;
+use crate::sampled::pull::{BANDWIDTH, Pull};
 
 /// The cable is slack when the load is nearer than this share of its length, or when this share of
 /// the payload's weight has gone from the usual pull, for as long as [`SLACKENING`], s.
@@ -70,6 +70,12 @@ impl<T: Real> Cable<T> {
     /// The pull is observed with no more than the bandwidth `most`, rad/s, from now on.
     pub(crate) fn yield_to(&mut self, most: T) {
         self.pull = self.pull.with_bandwidth(self.period, most);
+    }
+
+    /// The pull is observed as fast as it ever is from now on: what is slack does not bounce, and a
+    /// pull that is still believed holds the UAV up.
+    pub(crate) fn hasten(&mut self) {
+        self.yield_to(T::lit(BANDWIDTH));
     }
 
     /// After periods without the UAV's `velocity`.

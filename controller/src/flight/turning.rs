@@ -5,48 +5,76 @@ use nalgebra::{Matrix3, Vector3};
 
 /// How fast a body rate follows what the attitude says of it, rad/s.
 const FOLLOWING: f64 = 20.0;
-/// For how long an attitude is led by body rates alone, s: they drift.
-pub(crate) const LED: f64 = 5.0;
 
-/// A rate that stands still to the last bit is not believed once what it is the rate of has turned
-/// by this much else than it says, rad, which is forgotten over this time, s.
+/// What stands still to the last bit is not believed once attitude or rod have turned by this much
+/// else than their rates say, rad. With a rate that stands this is forgotten over this time, s.
 const TURNED: f64 = 0.03;
 const FORGOTTEN: f64 = 0.3;
 /// What turns faster than this, rad/s, has jumped.
 const FASTEST: f64 = 10.0;
 
-/// The watch on a rate that stands still: a driver that gives its last reading again, or none.
+/// The watch on a reading that stands still: a driver that gives its last one again, or none.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stuck<T> {
     is_stuck: bool,
-    rate: Vector3<T>,
-    /// What has turned else than by that, rad.
-    turned: Vector3<T>,
+    reading: Vector3<T>,
+    /// What has turned else than the rate says, rad.
+    off: Vector3<T>,
 }
 
 impl<T: Real> Stuck<T> {
     /// Nothing stands still.
     pub(crate) fn none() -> Self {
-        Self { is_stuck: false, rate: Vector3::zeros(), turned: Vector3::zeros() }
-    }
-
-    /// Whether there is something to [watch](Self::watch): the `rate` is the `last` one again though
-    /// something `has_turned`, or was not believed then.
-    #[inline]
-    pub(crate) fn is_due(&self, rate: &Vector3<T>, last: &Vector3<T>, has_turned: impl FnOnce() -> bool) -> bool {
-        self.is_stuck || rate.x == last.x && has_turned()
+        Self { is_stuck: false, reading: Vector3::zeros(), off: Vector3::zeros() }
     }
 
     /// Whether `rate` is to be left out, when there was a `last` one a `period` (s) ago and what it
     /// is of has `turned`, rad.
     #[inline(never)]
-    pub(crate) fn watch(&mut self, rate: &Vector3<T>, last: &Vector3<T>, turned: &Vector3<T>, period: T) -> bool {
+    pub(crate) fn watch_rate(
+        &mut self,
+        rate: &Vector3<T>,
+        last: &Vector3<T>,
+        turned: &Vector3<T>,
+        period: T,
+    ) -> bool {
         let most = period * T::lit(FASTEST);
-        if *rate != self.rate || !self.is_stuck && (rate != last || !is_within(turned, most * most)) {
-            *self = Self { rate: *rate, ..Self::none() };
-        } else if !self.is_stuck {
-            self.turned += turned - rate * period - self.turned * (period * T::lit(1.0 / FORGOTTEN));
-            self.is_stuck = !is_within(&self.turned, T::lit(TURNED * TURNED));
+        let off = turned - rate * period - self.off * (period * T::lit(1.0 / FORGOTTEN));
+        self.watch(rate, last, is_within(turned, most * most).then_some(off))
+    }
+
+    /// Whether `attitude` is to be left out, when there was a `last` one a `period` (s) ago and it
+    /// should have turned at `rate`, rad/s.
+    #[inline(never)]
+    pub(crate) fn watch_attitude(
+        &mut self,
+        attitude: &Matrix3<T>,
+        last: &Matrix3<T>,
+        rate: &Vector3<T>,
+        period: T,
+    ) -> bool {
+        // Each axis of the body moves one of them.
+        let [reading, last] = [attitude, last].map(|m| Vector3::new(m.m32, m.m31, m.m21));
+        self.watch(&reading, &last, Some(-rate * period))
+    }
+
+    /// Where the rate says that a reading which is not believed should have been when that showed,
+    /// rad from itself; once.
+    pub(crate) fn take_lag(&mut self) -> Vector3<T> {
+        -core::mem::replace(&mut self.off, Vector3::zeros())
+    }
+
+    /// It has turned by so much more else than the rate says, if it has not jumped.
+    fn watch(&mut self, reading: &Vector3<T>, last: &Vector3<T>, off: Option<Vector3<T>>) -> bool {
+        let is_new = *reading != self.reading || !self.is_stuck && reading != last;
+        match off {
+            _ if is_new => *self = Self { reading: *reading, ..Self::none() },
+            _ if self.is_stuck => {}
+            Some(off) => {
+                self.off += off;
+                self.is_stuck = !is_within(&self.off, T::lit(TURNED * TURNED));
+            }
+            None => *self = Self { reading: *reading, ..Self::none() },
         }
         self.is_stuck
     }

@@ -13,7 +13,7 @@ use model::{Real, Vehicle, is_within};
 use nalgebra::{Matrix3, Vector3};
 
 /// o, rad/s: faster than a swing, slower than noise; less where a cable stretches.
-const BANDWIDTH: f64 = 10.0;
+pub(crate) const BANDWIDTH: f64 = 10.0;
 /// Largest pull that is believed, in payload weights, and how much of it may be level beside what
 /// is vertical: a cable pulls down, wind sideways, and nothing lifts.
 const STRONGEST: f64 = 3.0;

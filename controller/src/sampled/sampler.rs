@@ -409,15 +409,14 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         Swing::of(vehicle, last, &observer.estimate().payload)
     }
 
-    /// The UAV where its command acts: its own position and velocity, after the time that attitude
-    /// and body rate look `ahead`.
-    pub(crate) fn look_ahead(&self, uav: &Uav<T>, force: &Vector3<T>) -> Uav<T> {
-        let (mut uav, mut acting) = (*uav, *self.memory.actuators.applied());
+    /// Moves the UAV to where its command acts: its own position and velocity, after the time that
+    /// attitude and body rate look `ahead`.
+    pub(crate) fn look_ahead(&self, uav: &mut Uav<T>, force: &Vector3<T>) {
+        let mut acting = *self.memory.actuators.applied();
         for index in 0..self.memory.actuators.legs() {
             let (time, mean) = self.leg(index, &mut acting);
-            uav = self.pass_uav(&uav, force, &mean, time);
+            self.pass_uav(uav, force, &mean, time);
         }
-        uav
     }
 
     /// A leg's time, s, and the mean of what acts in it. The last goes on to where the law's answer
@@ -434,21 +433,20 @@ impl<T: Real, A: Actuation<T>> Sampler<T, A> {
         (time, mean)
     }
 
-    /// The UAV `dt` later under a held `command` and what pulls at it, m/s².
+    /// Moves the UAV by `dt` under a held `command` and what pulls at it, m/s².
     #[inline(never)]
-    fn pass_uav(&self, uav: &Uav<T>, force: &Vector3<T>, command: &Command<T>, dt: T) -> Uav<T> {
+    fn pass_uav(&self, uav: &mut Uav<T>, force: &Vector3<T>, command: &Command<T>, dt: T) {
         let Memory { vehicle, observer, .. } = &self.memory;
         let (halfway, _) = turn(&uav.attitude, &uav.body_rate, &Vector3::zeros(), dt * T::lit(0.5));
         let b3: Vector3<T> = halfway.column(2).into();
         let mut acceleration = force - b3 * (command.thrust / vehicle.params().uav_mass);
         acceleration.z += vehicle.params().gravity;
-        let (position, velocity) = advance(&uav.position, &uav.velocity, &acceleration, dt);
+        (uav.position, uav.velocity) = advance(&uav.position, &uav.velocity, &acceleration, dt);
         let torque = command.torque + observer.estimate().torque;
         let inertia = vehicle.inertia();
         let spin = (inertia.component_mul(&uav.body_rate).cross(&uav.body_rate) + torque)
             .component_mul(vehicle.inverse_inertia());
-        let (attitude, body_rate) = turn(&uav.attitude, &uav.body_rate, &spin, dt);
-        Uav { position, velocity, attitude, body_rate }
+        (uav.attitude, uav.body_rate) = turn(&uav.attitude, &uav.body_rate, &spin, dt);
     }
 
     /// Ends a period with the state sampled now: corrects the observers and looks ahead.

@@ -45,6 +45,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         if matches!(self.mode, Mode::Join | Mode::Follow) {
             self.enter_hold(&self.now(state, uav), Some(Fault::Slack));
         }
+        self.cable.hasten();
         self.hold_at(state, uav)
     }
 
@@ -99,9 +100,10 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     pub(super) fn hold(&mut self, state: Option<&State<T>>, now: &Uav<T>, aim: Option<&Aim<T>>) -> Output<T> {
         let period = self.sampler.period();
-        let (aimed, pull, swing, velocity) = if let Some(&Aim { uav, target, velocity, pull }) = aim {
+        let mut uav = aim.map_or(*now, |aim| aim.uav);
+        let (pull, swing, velocity) = if let Some(&Aim { target, velocity, pull, .. }) = aim {
             self.hold.aim(target, velocity);
-            (uav, pull, None, velocity)
+            (pull, None, velocity)
         } else {
             let velocity = self.wanted_velocity(state, now);
             let is_taut = state.is_some_and(|state| self.hangs(&(state.position - now.position)));
@@ -109,10 +111,10 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 self.cable.yield_to(self.sampler.most_along());
             }
             let swing = is_taut.then(|| self.sampler.swing());
-            (*now, self.cable.pull(self.sampler.vehicle()), swing, velocity)
+            (self.cable.pull(self.sampler.vehicle()), swing, velocity)
         };
         let vehicle = self.sampler.vehicle();
-        let uav = self.sampler.look_ahead(&aimed, &pull);
+        self.sampler.look_ahead(&mut uav, &pull);
         let mut wanted = self.hold.step(vehicle, &uav, &pull, swing.as_ref(), &velocity, period);
         self.trim -= (self.trim + self.sampler.torque()) * (period / T::lit(TRIMMED)).min(T::one());
         wanted.torque += self.trim;

@@ -4,7 +4,7 @@ mod edges;
 mod flying;
 mod senses;
 
-use model::{Command, Disturbance, OutOfRange, Real, State, Uav};
+use model::{Channel, Command, Disturbance, OutOfRange, Real, State, Uav};
 use nalgebra::Vector3;
 
 use crate::error::Refused;
@@ -90,8 +90,6 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     /// Time without a good state, and of calm in hold, s.
     blind: T,
     calm: T,
-    /// Of body and rod.
-    stuck: [Stuck<T>; 2],
     envelope: Envelope<T>,
     cable: Cable<T>,
     payload: Payload<T>,
@@ -107,8 +105,8 @@ pub struct Supervisor<T, L, A = ActuatorLimits<T>> {
     /// p3 of the UAV when the last take-off, hold or landing began, m.
     from: T,
     motion: Motion<T>,
-    /// For how long the attitude has been led by body rates alone, s.
-    led: T,
+    /// Of the attitude, and of body and rod the rates.
+    stuck: [Stuck<T>; 3],
 }
 
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
@@ -138,7 +136,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             fault: None,
             is_by_law: false,
             motion: Motion::new(period),
-            stuck: [Stuck::none(); 2],
+            stuck: [Stuck::none(); 3],
             cable: Cable::new(&vehicle, period, most_along),
             payload: Payload::new(&vehicle, policy.payload_lost),
             landing: Landing::begin(),
@@ -146,7 +144,6 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             trim: Vector3::zeros(),
             from: T::zero(),
             blind: T::zero(),
-            led: T::zero(),
             calm: T::zero(),
         })
     }
@@ -265,7 +262,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let mut found = uav.and_then(|uav| self.see_uav(uav, measured.specific_force.as_ref()));
         let fault = match measured.state {
             None => Fault::NoState,
-            Some(state) => match state.check().and_then(|()| self.check_rates(state)) {
+            Some(state) => match state.check().and_then(|()| self.check_turning(state)) {
                 Err(channel) => Fault::State(channel),
                 Ok(()) => {
                     let doubt = self.doubt(state, found.as_ref().or(uav));
@@ -293,9 +290,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         if self.fault != Some(Fault::Caught) {
             self.fault = Some(fault);
         }
-        match uav {
-            Some(uav) => self.without_load(uav, measured.specific_force),
-            None => self.without_state(),
+        match (uav, fault) {
+            (None, _) | (_, Fault::State(Channel::Attitude)) => self.without_state(),
+            (Some(uav), _) => self.without_load(uav, measured.specific_force),
         }
     }
 
@@ -303,7 +300,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn begin(&mut self, state: &State<T>, thrust: T) {
         self.motion.forget();
-        self.stuck = [Stuck::none(); 2];
+        self.stuck = [Stuck::none(); 3];
         self.cable.begin(self.sampler.vehicle(), state, thrust);
         self.payload.leave();
         self.trim = Vector3::zeros();

@@ -1,5 +1,6 @@
 //! What is measured: what of it is believed, and what is flown on where a part is missing.
 
+use model::dynamics::turn;
 use model::{Channel, Command, Real, State, Uav};
 use nalgebra::{Matrix3, Vector3};
 
@@ -7,7 +8,7 @@ use super::Supervisor;
 use crate::flight::cable::Watching;
 use crate::flight::mode::{Fault, Lost, Measured, Mode, Output};
 use crate::flight::motion::{Off, Standing};
-use crate::flight::turning::{LED, angle, mend};
+use crate::flight::turning::{angle, mend};
 use crate::law::Law;
 use crate::sampled::actuator::Actuation;
 
@@ -101,20 +102,24 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         is_off
     }
 
-    /// Whether a rate stands still while what it is of turns.
+    /// Whether an attitude stands still while the body turns, or a rate while what it is of does.
     ///
     /// # Errors
-    /// The rate that is to be left out.
+    /// What is to be left out.
     #[inline]
-    pub(super) fn check_rates(&mut self, state: &State<T>) -> Result<(), Channel> {
-        let (last, [body, rod]) = (self.sampler.state(), &self.stuck);
+    pub(super) fn check_turning(&mut self, state: &State<T>) -> Result<(), Channel> {
+        let (now, last) = (state, self.sampler.state());
         // Tilted: a yaw alone does not fall.
-        let has_turned = || state.attitude.m32 != last.attitude.m32 || state.attitude.m31 != last.attitude.m31;
-        let has_swung = || state.rod.x != last.rod.x || state.rod.y != last.rod.y;
-        if body.is_due(&state.body_rate, &last.body_rate, has_turned)
-            || rod.is_due(&state.rod_rate, &last.rod_rate, has_swung)
+        let tilts = || now.attitude.m32 != last.attitude.m32 || now.attitude.m31 != last.attitude.m31;
+        let spins = || now.body_rate.x != last.body_rate.x || now.body_rate.y != last.body_rate.y;
+        let swings = || now.rod.x != last.rod.x || now.rod.y != last.rod.y;
+        // Something stands still though something else moves, or was left out last time.
+        if self.blind > T::zero()
+            || now.attitude.m32 == last.attitude.m32 && spins()
+            || now.body_rate.x == last.body_rate.x && tilts()
+            || now.rod_rate.x == last.rod_rate.x && swings()
         {
-            self.watch_rates(state)
+            self.watch_turning(state)
         } else {
             Ok(())
         }
@@ -122,12 +127,14 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
 
     #[cold]
     #[inline(never)]
-    fn watch_rates(&mut self, state: &State<T>) -> Result<(), Channel> {
-        let (last, period, [body, rod]) = (self.sampler.state(), self.sampler.period(), &mut self.stuck);
-        let turned = angle(&last.attitude, &state.attitude);
-        let channel = if body.watch(&state.body_rate, &last.body_rate, &turned, period) {
+    fn watch_turning(&mut self, now: &State<T>) -> Result<(), Channel> {
+        let (last, period, [attitude, body, rod]) = (self.sampler.state(), self.sampler.period(), &mut self.stuck);
+        let turned = angle(&last.attitude, &now.attitude);
+        let channel = if attitude.watch_attitude(&now.attitude, &last.attitude, &now.body_rate, period) {
+            Channel::Attitude
+        } else if body.watch_rate(&now.body_rate, &last.body_rate, &turned, period) {
             Channel::BodyRate
-        } else if rod.watch(&state.rod_rate, &last.rod_rate, &(state.rod - last.rod), period) {
+        } else if rod.watch_rate(&now.rod_rate, &last.rod_rate, &(now.rod - last.rod), period) {
             Channel::RodRate
         } else {
             return Ok(());
@@ -224,16 +231,18 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     #[inline(never)]
     fn mend(&mut self, state: &mut State<T>, missing: Channel) -> bool {
         let period = self.sampler.period();
-        if missing == Channel::Attitude {
-            self.led += period;
-        }
         let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault);
         // The last step was good, carried or mended itself.
         let is_known = self.blind <= self.policy.coast + period * T::lit(1.5);
-        if !(is_flying && is_known && self.led <= T::lit(LED)) {
+        if !(is_flying && is_known) {
             return false;
         }
         mend(state, missing, &self.sampler.carry(), period);
+        if missing == Channel::Attitude {
+            // Of one that stands still this shows late.
+            let [attitude, ..] = &mut self.stuck;
+            (state.attitude, _) = turn(&state.attitude, &attitude.take_lag(), &Vector3::zeros(), T::one());
+        }
         state.check().is_ok()
     }
 
@@ -255,7 +264,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 self.sampler.resume(state);
                 self.cable.resume(&velocity);
             }
-            (self.blind, self.led) = (T::zero(), T::zero());
+            self.blind = T::zero();
         }
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
