@@ -38,9 +38,8 @@ impl<T: Real> Stuck<T> {
         turned: &Vector3<T>,
         period: T,
     ) -> bool {
-        let most = period * T::lit(FASTEST);
         let off = turned - rate * period - self.off * (period * T::lit(1.0 / FORGOTTEN));
-        self.watch(rate, last, is_within(turned, most * most).then_some(off))
+        self.watch(rate, last, is_turn(turned, period).then_some(off))
     }
 
     /// Whether `attitude` is to be left out, when there was a `last` one a `period` (s) ago and it
@@ -55,7 +54,8 @@ impl<T: Real> Stuck<T> {
     ) -> bool {
         // Each axis of the body moves one of them.
         let [reading, last] = [attitude, last].map(|m| Vector3::new(m.m32, m.m31, m.m21));
-        self.watch(&reading, &last, Some(-rate * period))
+        let turned = rate * period;
+        self.watch(&reading, &last, is_turn(&turned, period).then(|| -turned))
     }
 
     /// Where the rate says that a reading which is not believed should have been when that showed,
@@ -78,6 +78,12 @@ impl<T: Real> Stuck<T> {
         }
         self.is_stuck
     }
+}
+
+/// Whether something may have `turned` so far in a `period`, rad and s.
+fn is_turn<T: Real>(turned: &Vector3<T>, period: T) -> bool {
+    let most = period * T::lit(FASTEST);
+    is_within(turned, most * most)
 }
 
 /// From one attitude to another near it, rad, in body axes.

@@ -21,13 +21,17 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// The edges that requests and good states open: the table's rows.
     #[inline]
     pub(super) fn change_mode(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) {
-        if (self.mode, self.request) != (Mode::Follow, Request::Follow) {
-            self.look_for_edge(state, uav);
+        if (self.mode, self.request) != (Mode::Follow, Request::Follow)
+            && self.take_edge(state, uav)
+            && let Some(state) = state
+        {
+            self.join(state, uav);
         }
     }
 
+    /// The same but for the one to the path: whether that is open.
     #[inline(never)]
-    fn look_for_edge(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) {
+    pub(super) fn take_edge(&mut self, state: Option<&State<T>>, uav: Option<&Uav<T>>) -> bool {
         let to = match (self.mode, self.request) {
             (Mode::Off, Request::Off | Request::Land) => Mode::Off,
             (Mode::Off, _) => Mode::Idle,
@@ -46,16 +50,17 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             _ => Mode::Hold,
         };
         if to == self.mode {
-            return;
+            return false;
         }
         match (to, state, uav) {
-            (Mode::Join, Some(state), _) => self.join(state, uav),
+            (Mode::Join, ..) => return true,
             (Mode::TakeOff | Mode::Hold | Mode::Land, _, Some(uav)) => self.change_to(to, uav),
             (Mode::TakeOff | Mode::Hold | Mode::Land, Some(state), None) => {
                 self.change_to(to, &self.now(state, None));
             }
             _ => self.mode = to,
         }
+        false
     }
 
     #[inline(never)]
@@ -106,7 +111,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
                 self.mode = Mode::Join;
             }
             Err(Refused::Searching) => {}
-            Err(_) => self.enter_hold(&self.now(state, uav), Some(Fault::NoPath)),
+            Err(_) => self.fall_back(state, uav, Fault::NoPath),
         }
     }
 

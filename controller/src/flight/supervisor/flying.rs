@@ -23,7 +23,7 @@ const CALM_TILT: f64 = 0.95;
 
 impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
     /// By the law, or by hold.
-    #[inline]
+    #[inline(always)]
     pub(super) fn fly(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
         let is_slack = self.cable.is_slack() || self.landing.is_set_down() || self.mode == Mode::TakeOff;
         let known = is_slack.then(|| self.sampler.freeze(state));
@@ -32,18 +32,26 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             self.sampler.keep(known);
             return self.fly_slack(state, uav);
         }
-        if matches!(self.mode, Mode::Join | Mode::Follow) {
-            self.follow(state, uav)
-        } else {
-            self.hold_at(state, uav)
+        if matches!(self.mode, Mode::Join | Mode::Follow)
+            && let Some(output) = self.follow(state, uav)
+        {
+            return output;
         }
+        self.hold_at(state, uav)
+    }
+
+    /// To hold, from the law.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn fall_back(&mut self, state: &State<T>, uav: Option<&Uav<T>>, fault: Fault) {
+        self.enter_hold(&self.now(state, uav), Some(fault));
     }
 
     /// With a cable that does not pull no law flies, and the observers keep what they know.
     #[cold]
     fn fly_slack(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
         if matches!(self.mode, Mode::Join | Mode::Follow) {
-            self.enter_hold(&self.now(state, uav), Some(Fault::Slack));
+            self.fall_back(state, uav, Fault::Slack);
         }
         self.cable.hasten();
         self.hold_at(state, uav)
@@ -69,10 +77,10 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         self.landing.around(vehicle, state, known, self.policy.descent, self.sampler.period())
     }
 
-    /// The law's command for when it acts, if its answer can be flown; hold's, if not.
+    /// The law's command for when it acts, if its answer can be flown; to hold, if not.
     // Apart, and so is hold: neither needs the other's stack.
     #[inline(never)]
-    fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Output<T> {
+    fn follow(&mut self, state: &State<T>, uav: Option<&Uav<T>>) -> Option<Output<T>> {
         self.sampler.ask(&mut self.law);
         let answer = self.law.answer();
         let standing = self.envelope.assess(&answer.margins, self.law.approach().path_det());
@@ -85,14 +93,14 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         } else {
             None
         };
-        if fault.is_some() {
-            self.enter_hold(&self.now(state, uav), fault);
-            return self.hold_at(state, uav);
+        if let Some(fault) = fault {
+            self.fall_back(state, uav, fault);
+            return None;
         }
         let command = self.sampler.accept(&mut self.law);
         self.is_by_law = true;
         let warning = if let Standing::Warning(margin) = standing { Some(margin) } else { None };
-        self.output(command, warning)
+        Some(self.output(command, warning))
     }
 
     /// Hold's command for when it acts, from the UAV and what is known of the rod now; it goes for

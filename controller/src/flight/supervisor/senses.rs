@@ -166,8 +166,12 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         uav: Option<&Uav<T>>,
         specific: Option<Vector3<T>>,
     ) -> Option<Output<T>> {
-        let state = self.may_carry().then(|| self.sampler.carry()).filter(|state| state.check().is_ok())?;
-        let velocity = self.now(&state, uav).velocity;
+        if !self.may_carry() {
+            return None;
+        }
+        let state = self.sampler.carry();
+        state.check().ok()?;
+        let velocity = self.uav_velocity(&state, uav);
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &velocity, &state.attitude, thrust, specific);
         self.change_mode(Some(&state), uav);
@@ -210,7 +214,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
         let uav = uav.as_ref();
         if matches!(self.mode, Mode::Join | Mode::Follow) {
-            self.enter_hold(&self.now(&state, uav), Some(fault));
+            self.fall_back(&state, uav, fault);
         }
         self.blind = self.blind.min(self.policy.coast);
         self.calm = T::zero();
@@ -218,7 +222,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         let thrust = self.sampler.applied().thrust;
         self.cable.sample(self.sampler.vehicle(), &now.velocity, &now.attitude, thrust, measured.specific_force);
         self.cable.watch(self.sampler.vehicle(), None, self.watching());
-        self.change_mode(Some(&state), uav);
+        self.take_edge(None, Some(&now));
         let known = self.sampler.freeze(&state);
         self.sampler.sample(&state);
         self.sampler.keep(known);
@@ -254,11 +258,7 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         uav: Option<&Uav<T>>,
         specific: Option<Vector3<T>>,
     ) -> Output<T> {
-        let length = self.sampler.vehicle().params().rod_length;
-        let velocity = match uav {
-            Some(uav) => uav.velocity,
-            None => state.velocity - state.rod_rate * length,
-        };
+        let velocity = self.uav_velocity(state, uav);
         if self.blind > T::zero() {
             if !self.may_carry() {
                 self.sampler.resume(state);
@@ -279,6 +279,13 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
             Mode::Idle => self.ground(Some(state), self.sampler.actuation().least_thrust()),
             _ => self.fly(state, uav),
         }
+    }
+
+    /// The UAV's velocity, m/s, by its own navigation, or from `state` with a taut cable.
+    #[inline]
+    fn uav_velocity(&self, state: &State<T>, uav: Option<&Uav<T>>) -> Vector3<T> {
+        let length = self.sampler.vehicle().params().rod_length;
+        uav.map_or_else(|| state.velocity - state.rod_rate * length, |uav| uav.velocity)
     }
 
     /// A step on the UAV alone.
