@@ -246,8 +246,9 @@ enum Command {
     ///
     /// Each line of standard input is a state as `plant` answers it: "position", "velocity",
     /// "uav_position", "uav_velocity", "attitude" and "body_rate", and where it is measured
-    /// "specific_force" in body axes; what else stands there is not looked at. The answer has
-    /// "thrust", "torque", "mode" and "fault". A control period passes with every line, and the
+    /// "specific_force" in body axes; what else stands there is not looked at. What is not measured
+    /// is null or NaN, a vector or a number of it; the rod is the line from UAV to load. The answer
+    /// has "thrust", "torque", "mode" and "fault". A control period passes with every line, and the
     /// scenario's requests hold from their times on.
     #[command(after_help = plant::PILOT_EXAMPLES)]
     Pilot {

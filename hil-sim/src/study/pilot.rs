@@ -2,7 +2,7 @@
 //! line, a JSON command a line. What a [plant](super::plant) answers is such a state.
 
 use controller::{Command, Matrix3, Uav, Vector3};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::json::Unique;
 use crate::describe::input::{Invalid, read};
@@ -11,15 +11,36 @@ use crate::fly::fault::describe;
 use crate::fly::pilot::{Answers, Pilot};
 use crate::world::{Bodies, Reading};
 
+/// What is not measured is NaN here.
 #[derive(Deserialize)]
 struct Seen {
+    #[serde(deserialize_with = "vector")]
     position: [f64; 3],
+    #[serde(deserialize_with = "vector")]
     velocity: [f64; 3],
+    #[serde(deserialize_with = "vector")]
     uav_position: [f64; 3],
+    #[serde(deserialize_with = "vector")]
     uav_velocity: [f64; 3],
+    #[serde(deserialize_with = "matrix")]
     attitude: [[f64; 3]; 3],
+    #[serde(deserialize_with = "vector")]
     body_rate: [f64; 3],
     specific_force: Option<[f64; 3]>,
+}
+
+/// A vector, or `null` in its place or in its numbers'.
+fn vector<'de, D: Deserializer<'de>>(text: D) -> Result<[f64; 3], D::Error> {
+    Ok(Option::<[Option<f64>; 3]>::deserialize(text)?.unwrap_or_default().map(or_nan))
+}
+
+/// Three of them, row by row.
+fn matrix<'de, D: Deserializer<'de>>(text: D) -> Result<[[f64; 3]; 3], D::Error> {
+    Ok(Option::<[[Option<f64>; 3]; 3]>::deserialize(text)?.unwrap_or_default().map(|row| row.map(or_nan)))
+}
+
+fn or_nan(number: Option<f64>) -> f64 {
+    number.unwrap_or(f64::NAN)
 }
 
 /// What the rotors are to give for the coming period, and why.
@@ -62,12 +83,14 @@ impl Controller {
         })
     }
 
-    /// The command for the period that begins at the state in `line`.
+    /// The command for the period that begins at the state in `line`. A vector or number that is not
+    /// measured is `null`, or NaN as Python writes it.
     ///
     /// # Errors
     /// [`Invalid`] names the field that is missing or no number; no period has passed then.
     pub fn step(&mut self, line: &[u8]) -> Result<Answer, Invalid> {
-        let Unique(value) = serde_json::from_slice(line).map_err(|error| Invalid::new("line", error))?;
+        let line = String::from_utf8_lossy(line).replace("NaN", "null");
+        let Unique(value) = serde_json::from_str(&line).map_err(|error| Invalid::new("line", error))?;
         let seen: Seen = read("", value)?;
         let bodies = Bodies {
             position: seen.position.into(),
@@ -87,7 +110,10 @@ impl Controller {
             aboard: None,
         };
         let (request, factor) = self.requests.at(self.step);
-        if let Some(applied) = self.taken_over_from.take() {
+        // The first whole state is the one to go on from.
+        if reading.state.check().is_ok()
+            && let Some(applied) = self.taken_over_from.take()
+        {
             self.pilot.take_over(&reading.state, &applied);
         }
         if let Some(factor) = factor {
@@ -136,6 +162,45 @@ mod tests {
         }
         assert_eq!(modes, ["idle", "takeoff", "hold", "land", "off"]);
         assert_eq!(seen.on_ground, [true, true], "{seen:?}");
+    }
+
+    /// In hold load, attitude and body rate are each not measured for two seconds, as `null` or as
+    /// NaN: the vehicle stays where it is, says what is missing, and lands.
+    #[test]
+    fn what_is_not_measured_is_null() {
+        let scenario = Scenario::parse("pilot.toml", TEXT).unwrap();
+        for (fields, fault) in [
+            (&["position", "velocity"][..], "state: position"),
+            (&["attitude"], "state: attitude"),
+            (&["body_rate"], "state: bodyrate"),
+        ] {
+            let (mut plant, mut controller) = (Plant::new(&scenario), Controller::new(&scenario).unwrap());
+            let (mut seen, mut mode, mut height) = (plant.now(), String::new(), 0.0);
+            for step in 0..15_000 {
+                let mut state = serde_json::to_value(&seen).unwrap();
+                let is_missing = (2500..3000).contains(&step);
+                for field in fields.iter().filter(|_| is_missing) {
+                    state[*field] = if step % 2 == 0 { "NaN".into() } else { serde_json::Value::Null };
+                }
+                let command = controller.step(state.to_string().replace("\"NaN\"", "NaN").as_bytes()).unwrap();
+                if step == 2499 {
+                    height = seen.uav_position[2];
+                } else if is_missing {
+                    assert!((seen.uav_position[2] - height).abs() < 1.0, "{fields:?} at {step}: {seen:?}");
+                }
+                if step == 2999 {
+                    assert_eq!(
+                        (command.mode.as_str(), command.fault.as_deref()),
+                        ("hold", Some(fault)),
+                        "{fields:?}"
+                    );
+                }
+                let line = serde_json::json!({ "thrust": command.thrust, "torque": command.torque });
+                mode = command.mode;
+                seen = plant.step(line.to_string().as_bytes()).unwrap();
+            }
+            assert_eq!((mode.as_str(), seen.on_ground), ("off", [true, true]), "{fields:?}");
+        }
     }
 
     #[test]

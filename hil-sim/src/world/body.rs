@@ -46,11 +46,11 @@ impl Bodies {
         let (d, apart) = (self.position - self.uav_position, self.velocity - self.uav_velocity);
         let length = square(&d).sqrt();
         // One on top of the other: as if it hung straight down.
-        let (rod, rod_rate) = if length > 1e-9 {
+        let (rod, rod_rate) = if length <= 1e-9 {
+            (Vector3::z(), Vector3::zeros())
+        } else {
             let rod = d / length;
             (rod, (apart - rod * rod.dot(&apart)) / length)
-        } else {
-            (Vector3::z(), Vector3::zeros())
         };
         State {
             position: self.position,
