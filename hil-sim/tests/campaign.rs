@@ -220,6 +220,8 @@ fn a_fault_that_is_not_there_is_refused_by_name() {
         ("layout = \"quad-x\"", "layout = \"hexa-x\"", "hexa-x"),
         ("quantum = 0.001", "drift = 0.001", "drift"),
         ("\"vehicle.payload_mass\"", "\"vehicle.colour\"", "colour"),
+        ("title = \"short\"", "ground_p3 = nan", "ground_p3: NaN is outside -100000 to 100000"),
+        ("law = \"follow\"", "law = 1", "controller.law: one word is wanted"),
     ] {
         fs::write(folder.join("campaign.toml"), CAMPAIGN.replace(from, to)).expect("a file");
         let output = command(&folder, "out", &[]).output().expect("it starts");

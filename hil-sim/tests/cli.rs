@@ -56,7 +56,9 @@ fn refused(test: &str, scenario: &str) -> String {
 
 #[test]
 fn a_name_that_is_unknown_is_answered_with_those_that_are_known() {
-    for (command, known) in [("run", "figure-eight"), ("check", "fig3a"), ("campaign", "ground-to-ground")] {
+    for (command, known) in
+        [("run", "figure-eight"), ("check", "fig3a"), ("tune", "fig3a"), ("campaign", "ground-to-ground")]
+    {
         let output = program().args([command, "fig-of-eight"]).output().expect("it starts");
         let message = text(&output.stderr);
         assert!(!output.status.success() && message.contains("fig-of-eight: "), "{message}");
@@ -131,7 +133,7 @@ fn quiet_is_silent() {
 
 #[test]
 fn scenario_errors_name_file_line_and_field() {
-    let cases: [(&str, String, usize, &str); 12] = [
+    let cases: [(&str, String, usize, &str); 13] = [
         ("unknown-key", SHORT.replace("duration_s", "duration"), 2, "duration"),
         ("unknown-controller-key", format!("{SHORT}speed = 3\n"), 6, "controller.speed"),
         ("unknown-path-key", SHORT.replace("radius", "radios"), 3, "path.radios"),
@@ -142,6 +144,7 @@ fn scenario_errors_name_file_line_and_field() {
         ("told-mass", format!("{SHORT}vehicle = {{ payload_mass = 0.0 }}\n"), 6, "controller.vehicle.payload_mass"),
         ("pole", format!("{SHORT}poles = [[-1], [-1], [-1], [-1]]\n"), 6, "controller.poles[0]"),
         ("type", format!("{SHORT}rate_hz = \"fast\"\n"), 6, "controller.rate_hz"),
+        ("table", SHORT.replace("{ kind", "[] # { kind"), 3, "path: invalid length 0, expected a table"),
         ("kind", SHORT.replace("\"circle\"", "\"square\""), 3, "path.kind"),
         ("reference", SHORT.replace("path =", "reference ="), 3, "reference"),
     ];
@@ -224,6 +227,32 @@ fn eval_answers_empty_lines_and_refuses_what_could_be_meant_in_two_ways() {
     }
 }
 
+/// Below zero, too, which is a value and no option.
+#[test]
+fn a_number_that_an_option_does_not_take_is_answered_with_its_range() {
+    for (arguments, range) in [
+        (&["campaign", "--runs", "-1"][..], "a whole number from 1 to 100000000"),
+        (&["campaign", "--seed", "-1"], "a whole number from 0 to 18446744073709551615"),
+        (&["compare", "--jobs", "0"], "a whole number from 1 to 4096"),
+        (&["compare", "--bandwidth", "nan"], "a number from 0.01 to 100 rad/s"),
+        (&["estimate", "--runs", "1e9"], "a whole number from 1 to 100000"),
+        (&["policies", "--runs", "0"], "a whole number from 1 to 100000"),
+        (&["tune", "--scales", "-1,2"], "a number from 0.01 to 100"),
+        (&["tune", "--bandwidths", "4,1e9"], "a number from 0 to 100 rad/s"),
+        (&["fit", "points.csv", "--tolerance", "-1"], "a number from 0.000001 to 1000 m"),
+        (&["route", "points.csv", "--terrain", "-1e9"], "a number from -10000 to 10000 m"),
+        (&["replay", "log.csv", "--from", "nan"], "a number from -10000000000 to 10000000000 s"),
+        (&["hil", "--baud", "0"], "a whole number from 300 to 20000000 baud"),
+        (&["hil", "--patience", "-1"], "a number from 0.1 to 3600 s"),
+        (&["calibrate", "log.csv", "--uav-mass", "-1", "--payload-mass", "1"], "a number from 0.01 to 1000 kg"),
+    ] {
+        let output = program().args(arguments).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = text(&output.stderr);
+        assert!(said.lines().next().is_some_and(|line| line.ends_with(range)), "{arguments:?}: {said}");
+    }
+}
+
 /// Long before the hours that the flights would take.
 #[test]
 fn a_folder_that_cannot_be_written_to_is_named_before_anything_is_flown() {
@@ -233,11 +262,12 @@ fn a_folder_that_cannot_be_written_to_is_named_before_anything_is_flown() {
     fs::write(folder.join("file"), "").expect("a file");
     fs::write(folder.join("points.csv"), "1,0,-10\n0,2,-10\n-1,0,-10\n0,-2,-11\n").expect("a file");
     let out = folder.join("file/out");
-    let commands: [&[&str]; 6] = [
+    let commands: [&[&str]; 7] = [
         &["run", "endless.toml"],
         &["tune", "endless.toml", "--runs", "100000"],
         &["compare", "--runs", "100000"],
         &["policies", "--runs", "100000"],
+        &["estimate", "--runs", "100000"],
         &["campaign", "--runs", "100000000"],
         &["fit", "points.csv"],
     ];
@@ -453,6 +483,14 @@ fn a_log_is_replayed_beside_it_and_named_where_it_can_not_be() {
     assert!(again.lines().next().is_some_and(|names| names.contains(",logged_thrust,")));
     let summary = fs::read_to_string(folder.join("out/summary.json")).expect("a summary");
     assert!(summary.contains("\"thrust_n\""), "{summary}");
+
+    // A clock that jumps, as at a first fix, leaves no flight of a century.
+    let (names, rows) = text(&flown).split_once('\n').map(|(a, b)| (a.to_owned(), b.to_owned())).expect("rows");
+    let jump = rows.trim_end().lines().last().expect("a row").split_once(',').expect("columns").1.to_owned();
+    fs::write(folder.join("jump.csv"), format!("{names}\n{rows}1.7e9,{jump}\n")).expect("a file");
+    let jumped = run(&["replay", "jump.csv", "--with", "short.toml"]);
+    assert_eq!(jumped.status.code(), Some(1));
+    assert!(text(&jumped.stderr).contains("has the log's clock jumped?"), "{}", text(&jumped.stderr));
 
     fs::write(folder.join("poor.csv"), "t_s,p1,p2,p3\n0,1,2,3\n").expect("a file");
     let poor = text(&run(&["replay", "poor.csv", "--with", "short.toml"]).stderr);

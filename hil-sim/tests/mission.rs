@@ -223,6 +223,12 @@ fn what_is_unclear_is_refused_by_name() {
         (table("lat,east,up", |[a, o, up]| format!("{a},{o},{up}")), Some(HOME), "together"),
         (table("lat,lon,alt", |[a, o, up]| format!("{o},{a},{up}")), Some(HOME), "no latitude"),
         ("north,east,up\n0,0,10\n".to_owned(), None, "1 points"),
+        ("north,east,up\n0,0,10\n0,0,10\n".to_owned(), None, "all points are one"),
+        ("north,east,up\n0,0,10\n0,nan,10\n".to_owned(), None, "line 3: column 2: NaN is outside"),
+        (json!({ "type": "Polygon", "coordinates": [[[1], [2], [3]]] }).to_string(), Some(HOME), "longitude"),
+        ("{\"fileType\": \"Pan\"}".to_owned(), None, "neither a plan"),
+        // Cut off within an element.
+        (kml("absolute").split_once("</coordinates>").expect("it has some").0.to_owned(), None, "the file ends"),
         (table("lat,lon,alt", |[a, o, up]| format!("{a},{},{up}", o + 2.0)), Some(HOME), "km from home"),
     ] {
         let error = refusal(&text, home);
@@ -246,5 +252,40 @@ fn tables_of_lengths_are_read_as_they_say() {
         for (found, wanted) in found.waypoints.iter().zip([[1.0, 2.0, -3.0], [4.0, 5.0, -6.0]]) {
             assert!(found.point.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-8), "{text}: {found:?}");
         }
+    }
+}
+
+/// A fence that is not understood is no fence that may be left out, and an item no other one.
+#[test]
+fn what_has_another_type_in_a_plan_is_named() {
+    for (place, value, message) in [
+        ("/mission", json!("x"), "mission is \"x\": an object is wanted"),
+        ("/mission/items", json!({}), "mission: items is {}: a list is wanted"),
+        ("/mission/items", json!(null), "mission: it has no items"),
+        ("/mission/plannedHomePosition", json!([53.5]), "plannedHomePosition: 3 numbers"),
+        ("/mission/items/1", json!("x"), "item 2: type is missing: SimpleItem or ComplexItem"),
+        ("/mission/items/1/type", json!("Foo"), "item 2: type is \"Foo\""),
+        ("/mission/items/1/command", json!("16"), "item 2: command is \"16\": a whole number"),
+        ("/mission/items/1/frame", json!(-1), "item 2: frame is -1: a whole number"),
+        ("/mission/items/1/doJumpId", json!("x"), "item 2: doJumpId is \"x\""),
+        ("/mission/items/1/params/4", json!("53"), "item 2: params: 7 numbers"),
+        ("/mission/items/1/params/4", json!(500.0), "item 2: latitude 500 is outside"),
+        ("/mission/items/1/params/6", json!(null), "item 2: height NaN not in"),
+        ("/geoFence", json!("x"), "geoFence is \"x\": an object"),
+        ("/geoFence/polygons", json!("x"), "geoFence: polygons is \"x\": a list"),
+        ("/geoFence/polygons/0/polygon/0", json!([53.5]), "geoFence polygon 1: corner 1: 2 numbers"),
+        ("/geoFence/polygons/0/polygon", json!([[53.5, -113.5]]), "geoFence polygon 1: 1 corners"),
+        ("/geoFence/polygons/0/inclusion", json!("yes"), "inclusion is \"yes\": true or false"),
+        ("/geoFence/circles/0/circle", json!([]), "geoFence circle 1: circle is []: an object"),
+        ("/geoFence/circles/0/circle/radius", json!(null), "geoFence circle 1: radius is null: a number"),
+        ("/geoFence/circles/0/circle/center", json!([]), "geoFence circle 1: center: 2 numbers"),
+    ] {
+        let mut plan: serde_json::Value = serde_json::from_str(&plan(3)).expect("a plan");
+        *plan.pointer_mut(place).expect(place) = value;
+        let refused = mission::read("flight", &plan.to_string())
+            .and_then(|mission| mission.local(None, None, &Defaults::default()))
+            .expect_err(place)
+            .to_string();
+        assert!(refused.contains(message), "{place}: {refused}");
     }
 }

@@ -57,7 +57,9 @@ pub fn replay(
     if let Some(full_thrust) = full_thrust {
         within("full_thrust", full_thrust, [1e-3, 1e6])?;
     }
-    let bytes = std::fs::read(log)?;
+    let name = log.display().to_string();
+    let named = |error: std::io::Error| std::io::Error::new(error.kind(), format!("{name}: {error}"));
+    let bytes = std::fs::read(log).map_err(named)?;
     let (scenario, part) = (scenario.flown.clone(), Part { from_s, to_s, full_thrust });
     let outcome = py.detach(|| replayed(scenario, &bytes, &part)).map_err(|error| match error {
         ReplayError::Scenario(error) => invalid(error),

@@ -63,11 +63,13 @@ impl Scenario {
                     Err(error) => {
                         let found = built_in().find(|(name, _)| file.as_os_str() == *name);
                         let (name, text) = found.ok_or_else(|| {
-                            let message = format!("{}: {error}", file.display());
-                            match error.kind() {
-                                ErrorKind::NotFound => PyFileNotFoundError::new_err(message),
-                                _ => PyOSError::new_err(message),
+                            let name = file.display();
+                            if error.kind() != ErrorKind::NotFound {
+                                return PyOSError::new_err(format!("{name}: {error}"));
                             }
+                            let known = built_in().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
+                            let absent = "there is no such file, and the built-in scenarios are";
+                            PyFileNotFoundError::new_err(format!("{name}: {absent} {known}"))
                         })?;
                         Self::parse(&format!("{name}.toml"), text)?
                     }

@@ -78,7 +78,7 @@ def test_what_is_wrong_in_a_scenario_is_named(tmp_path):
         slung.Scenario(vehicle={"colour": 1.0})
     with pytest.raises(TypeError, match="vehicle: a object is no value"):
         slung.Scenario(vehicle=object())
-    with pytest.raises(FileNotFoundError, match="nowhere.toml"):
+    with pytest.raises(FileNotFoundError, match="nowhere.toml: .*fig3a"):
         slung.Scenario("nowhere.toml")
     file = tmp_path / "wrong.toml"
     file.write_text("title = 'x'\nduration_s = 'long'\n")

@@ -31,6 +31,8 @@ const LOCAL: u8 = MavFrame::MAV_FRAME_LOCAL_NED as u8;
 
 /// Degrees of a step of an item's x and y, where they are latitude and longitude.
 pub const DEGREES: f64 = 1e-7;
+/// Steps of a degree.
+const STEPS: u32 = 10_000_000;
 /// m of a step of x and y, where they are n1 and n2.
 pub const METRES: f64 = 1e-4;
 
@@ -234,7 +236,10 @@ impl Item {
             WAYPOINT | SPLINE_WAYPOINT | LOITER_UNLIMITED | LOITER_TIME | TAKE_OFF | LAND => {
                 self.check_place()?;
                 if command != LAND && (z.is_nan() || z.abs() > 1e5) {
-                    return Err(Refusal::new(R::MAV_MISSION_INVALID_PARAM7, format_args!("height {z} m")));
+                    return Err(Refusal::new(
+                        R::MAV_MISSION_INVALID_PARAM7,
+                        format_args!("height {z} not in -1e5 to 1e5"),
+                    ));
                 }
                 if matches!(command, WAYPOINT | SPLINE_WAYPOINT | LOITER_TIME) {
                     within("rest", first, LONGEST, R::MAV_MISSION_INVALID_PARAM1)?;
@@ -276,14 +281,14 @@ impl Item {
             return Ok(());
         }
         let far = |name, value: i32, most: u32, result| {
-            if value.unsigned_abs() <= most {
+            if value.unsigned_abs() <= STEPS.saturating_mul(most) {
                 return Ok(());
             }
             let degrees = f64::from(value) * DEGREES;
-            Err(Refusal::new(result, format_args!("{name} {degrees:.1} degrees")))
+            Err(Refusal::new(result, format_args!("{name} {degrees:.1} not in -{most} to {most}")))
         };
-        far("latitude", self.x, 900_000_000, R::MAV_MISSION_INVALID_PARAM5_X)?;
-        far("longitude", self.y, 1_800_000_000, R::MAV_MISSION_INVALID_PARAM6_Y)
+        far("latitude", self.x, 90, R::MAV_MISSION_INVALID_PARAM5_X)?;
+        far("longitude", self.y, 180, R::MAV_MISSION_INVALID_PARAM6_Y)
     }
 
     /// It says nothing of where the load goes.

@@ -206,7 +206,7 @@ impl Reader<'_> {
             return Ok(());
         }
         if self.is_over {
-            return Err(Refusal::invalid(format_args!("behind the mission's end")));
+            return Err(Refusal::invalid(format_args!("behind the jump or landing that ends it")));
         }
         let [first, second, _, heading] = item.params;
         match item.command {

@@ -1,6 +1,7 @@
 //! `calibrate`: what a vehicle is, from logs of its flights.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::study::calibrate::{self, Known};
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -24,35 +25,22 @@ pub struct CalibrateArguments {
     #[arg(required = true, value_name = "LOG")]
     files: Vec<PathBuf>,
     /// Mass of the UAV, kg, 0.01 to 1000.
-    #[arg(long, value_name = "KG", value_parser = within::<1, 100_000>)]
+    #[arg(long, value_name = "KG", value_parser = argument(0.01..=1000.0, "kg"))]
     uav_mass: f64,
     /// Mass of the load, kg, 0.01 to 1000: weighed, since at hover it is one with the thrust scale.
-    #[arg(long, value_name = "KG", value_parser = within::<1, 100_000>)]
+    #[arg(long, value_name = "KG", value_parser = argument(0.01..=1000.0, "kg"))]
     payload_mass: f64,
     /// Time over which a reading of the accelerometer is the mean, s, 0.0001 to 0.1.
-    #[arg(long, default_value_t = 0.002, value_name = "S")]
+    #[arg(long, default_value_t = 0.002, value_name = "S", value_parser = argument(1e-4..=0.1, "s"))]
     imu_period: f64,
     /// Density of the air, kg/m³.
-    #[arg(long, default_value_t = 1.225, value_name = "KG/M3")]
+    #[arg(long, default_value_t = 1.225, value_name = "KG/M3", value_parser = argument(0.1..=10.0, "kg/m³"))]
     density: f64,
-}
-
-/// A number within hundredths LEAST to MOST.
-fn within<const LEAST: u32, const MOST: u32>(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    let (least, most) = (f64::from(LEAST) / 100.0, f64::from(MOST) / 100.0);
-    if (least..=most).contains(&value) { Ok(value) } else { Err(format!("not within {least} to {most}")) }
 }
 
 /// Reads, fits, prints.
 pub fn calibrate(common: &Common, arguments: &CalibrateArguments) -> Ended {
     let CalibrateArguments { files, uav_mass, payload_mass, imu_period, density } = arguments;
-    for (name, value, [least, most]) in [("imu-period", *imu_period, [1e-4, 0.1]), ("density", *density, [0.1, 10.0])]
-    {
-        if !(least..=most).contains(&value) {
-            return Err(format!("--{name} {value}: not within {least} to {most}").into());
-        }
-    }
     let mut logs = Vec::new();
     for file in files {
         let name = file.display();

@@ -1,6 +1,7 @@
 //! `campaign` and `merge`: thousands of drawn flights.
 
 use clap::{Args, ValueEnum};
+use hil_sim::describe::input::argument;
 use hil_sim::fly::flight::Control;
 use hil_sim::report::log;
 use hil_sim::study::campaign::{self, Campaign, HuntError, Identity, Replay, Rows, Shard};
@@ -40,7 +41,7 @@ pub struct CampaignArguments {
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Flights; as the file says if left out.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", value_parser = argument(1..=100_000_000_u64, ""))]
     runs: Option<u64>,
     #[command(flatten)]
     many: Many,

@@ -1,6 +1,7 @@
 //! `compare`: four laws against the world.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::fly::flight::Control;
 use hil_sim::study::compare;
 use std::io::{self, Write};
@@ -18,12 +19,12 @@ pub const EXAMPLES: &str = "Examples:
 #[derive(Args)]
 pub struct CompareArguments {
     /// Flights for each case and law.
-    #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 200, value_name = "N", value_parser = argument(1..=100_000_u32, ""))]
     runs: u32,
     #[command(flatten)]
     many: Many,
     /// Bandwidth of the disturbance observers, rad/s.
-    #[arg(long, default_value_t = compare::BANDWIDTH, value_name = "RAD_S")]
+    #[arg(long, default_value_t = compare::BANDWIDTH, value_name = "RAD_S", value_parser = argument(0.01..=100.0, "rad/s"))]
     bandwidth: f64,
     /// Only this case; may be given several times.
     #[arg(long = "case", value_name = "NAME")]
@@ -33,9 +34,6 @@ pub struct CompareArguments {
 /// Flies, prints the table, writes the files.
 pub fn compare(common: &Common, arguments: &CompareArguments) -> Ended {
     let CompareArguments { runs, many, bandwidth, cases } = arguments;
-    if !(0.01..=100.0).contains(bandwidth) {
-        return Err(format!("--bandwidth {bandwidth}: outside 0.01 to 100").into());
-    }
     let runs = *runs as usize;
     if let Some(unknown) = cases.iter().find(|name| !compare::CASES.iter().any(|case| case.name == **name)) {
         let known: Vec<&str> = compare::CASES.iter().map(|case| case.name).collect();

@@ -1,6 +1,7 @@
 //! `estimate`: the law on an estimate of its state.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::fly::flight::Control;
 use hil_sim::study::estimate::{self, CASES};
 use std::io::{self, Write};
@@ -18,7 +19,7 @@ pub const EXAMPLES: &str = "Examples:
 #[derive(Args)]
 pub struct EstimateArguments {
     /// Flights for each case.
-    #[arg(long, default_value_t = 16, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 16, value_name = "N", value_parser = argument(1..=100_000_u32, ""))]
     runs: u32,
     #[command(flatten)]
     many: Many,
@@ -37,6 +38,7 @@ pub fn estimate(common: &Common, arguments: &EstimateArguments) -> Ended {
     let wanted = |name: &str| cases.is_empty() || cases.iter().any(|case| case == name);
     let runs = *runs as usize;
     let stop = many::interrupt()?;
+    common.tried()?;
     let pool = many.pool()?;
     let bar = many::progress_bar(common.quiet, estimate::work_s(runs, &wanted));
     let flown = pool.install(|| {

@@ -1,6 +1,7 @@
 //! `fit`: a closed curve through waypoints.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::report;
 use hil_sim::study::fit;
 use std::io::{self, Write};
@@ -25,7 +26,7 @@ pub struct FitArguments {
     #[arg(value_name = "WAYPOINTS")]
     file: PathBuf,
     /// Largest distance of a waypoint from the curve, m.
-    #[arg(long, default_value_t = 0.05, value_name = "METRES")]
+    #[arg(long, default_value_t = 0.05, value_name = "METRES", value_parser = argument(1e-6..=1e3, "m"))]
     tolerance: f64,
     /// Print the curve as a Rust constant of the controller's type.
     #[arg(long)]
@@ -36,9 +37,6 @@ pub struct FitArguments {
 pub fn fit(common: &Common, arguments: &FitArguments) -> Ended {
     let FitArguments { file, tolerance, rust } = arguments;
     let name = file.display().to_string();
-    if !(*tolerance > 0.0 && tolerance.is_finite()) {
-        return Err(format!("--tolerance {tolerance}: not a positive length").into());
-    }
     let text = std::fs::read_to_string(file).map_err(|error| format!("{name}: {error}"))?;
     if let Some(to) = &common.out {
         report::try_file(to)?;

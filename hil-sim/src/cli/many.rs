@@ -1,6 +1,7 @@
 //! What the commands that fly many flights share: options, threads, progress, and an interrupt.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::process::ExitCode;
@@ -11,10 +12,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 #[derive(Args)]
 pub struct Many {
     /// Seed of all random numbers.
-    #[arg(long, default_value_t = 1, value_name = "S")]
+    #[arg(long, default_value_t = 1, value_name = "S", value_parser = argument(0..=u64::MAX, ""))]
     pub seed: u64,
     /// Threads; all cores if left out.
-    #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    #[arg(long, value_name = "J", value_parser = argument(1..=4096_u16, ""))]
     jobs: Option<u16>,
 }
 

@@ -18,7 +18,7 @@ mod route;
 mod tune;
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use hil_sim::describe::scenario::{CURVES, FIGURES};
 use hil_sim::fly::run::Arithmetic;
 use hil_sim::report::log::Format;
@@ -268,7 +268,13 @@ enum Command {
 
 /// Does what the command line says.
 pub fn run() -> Ended {
-    let Cli { command, common } = Cli::parse();
+    // A number below zero is a value, which its option refuses by its range, and no option.
+    let negative = |arg: clap::Arg| {
+        let is_option = !arg.is_positional() && arg.get_action().takes_values();
+        if is_option { arg.allow_negative_numbers(true) } else { arg }
+    };
+    let commands = Cli::command().mut_subcommands(|command| command.mut_args(negative));
+    let Cli { command, common } = Cli::from_arg_matches(&commands.get_matches()).unwrap_or_else(|error| error.exit());
     match command {
         Some(Command::Run { files, trap, unchecked, logs }) => {
             let arithmetic = if trap { Arithmetic::Trapped } else { Arithmetic::F32 };

@@ -1,6 +1,7 @@
 //! `policies`: path following against trajectory tracking.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::fly::flight::Control;
 use hil_sim::study::compare;
 use std::io::{self, Write};
@@ -17,7 +18,7 @@ pub const EXAMPLES: &str = "Examples:
 #[derive(Args)]
 pub struct PolicyArguments {
     /// Starts for each trial.
-    #[arg(long, default_value_t = 200, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 200, value_name = "N", value_parser = argument(1..=100_000_u32, ""))]
     runs: u32,
     #[command(flatten)]
     many: Many,

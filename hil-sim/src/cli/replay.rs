@@ -1,6 +1,7 @@
 //! `replay`: a flown log through estimator and law.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::describe::reference::Reference;
 use hil_sim::report;
 use hil_sim::study::replay::{self, Part};
@@ -31,19 +32,14 @@ pub struct ReplayArguments {
     with: Option<PathBuf>,
     /// What all rotors give together at most, N, for logs that have thrust as a share; four times
     /// that of [actuators] rotors if left out.
-    #[arg(long, value_name = "N", value_parser = positive)]
+    #[arg(long, value_name = "N", value_parser = argument(1e-3..=1e6, "N"))]
     full_thrust: Option<f64>,
     /// Begin at so many seconds of the log.
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = argument(-1e10..=1e10, "s"))]
     from: Option<f64>,
     /// End at so many.
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", value_parser = argument(-1e10..=1e10, "s"))]
     to: Option<f64>,
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    let value: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
-    if value > 0.0 && value <= 1e6 { Ok(value) } else { Err("not within 0 to 1000000, without 0".to_owned()) }
 }
 
 /// Replays, prints, and writes the report.

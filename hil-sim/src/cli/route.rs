@@ -3,6 +3,7 @@
 use autopilot::Settings;
 use clap::Args;
 use controller::{End, Vehicle, VehicleParams};
+use hil_sim::describe::input::argument;
 use hil_sim::describe::mission::{self, Defaults, Home, Local};
 use hil_sim::describe::path::RouteSpec;
 use hil_sim::describe::scenario::{Law, Scenario};
@@ -11,7 +12,6 @@ use hil_sim::study::check::{Limits, Report};
 use rig::parameter;
 use std::error::Error;
 use std::io::{self, Write};
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -41,14 +41,14 @@ pub struct RouteArguments {
     #[arg(long, value_name = "LAT,LON,ALT", value_parser = mission::home, allow_hyphen_values = true)]
     home: Option<Home>,
     /// Height of the ground, m above the sea, for heights that the file counts from the terrain.
-    #[arg(long, value_name = "METRES", allow_hyphen_values = true)]
+    #[arg(long, value_name = "METRES", value_parser = argument(-1e4..=1e4, "m"))]
     terrain: Option<f64>,
     /// Speed where the file says none, m/s: a vehicle's MIS_SPEED.
-    #[arg(long, default_value_t = Defaults::default().speed, value_name = "M/S", allow_hyphen_values = true, value_parser = speed)]
+    #[arg(long, default_value_t = Defaults::default().speed, value_name = "M/S", value_parser = argument(0.05..=100.0, "m/s"))]
     speed: f64,
     /// How far from a waypoint its corner's blend begins where the file does not say, m: a
     /// vehicle's MIS_CORNER.
-    #[arg(long, default_value_t = Defaults::default().corner_m, value_name = "METRES", allow_hyphen_values = true, value_parser = corner)]
+    #[arg(long, default_value_t = Defaults::default().corner_m, value_name = "METRES", value_parser = argument(0.02..=1000.0, "m"))]
     corner: f64,
     /// The last waypoint leads back to the first.
     #[arg(long)]
@@ -62,19 +62,6 @@ pub struct RouteArguments {
     /// Draw a map of legs, blends, stops and fences.
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-}
-
-fn speed(text: &str) -> Result<f64, String> {
-    within(text, 0.05..=100.0, "m/s")
-}
-
-fn corner(text: &str) -> Result<f64, String> {
-    within(text, 0.02..=1000.0, "m")
-}
-
-fn within(text: &str, range: RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
-    let inside = text.parse().ok().filter(|value| range.contains(value));
-    inside.ok_or_else(|| format!("a number from {} to {} {unit}", range.start(), range.end()))
 }
 
 /// Part of the route's time, and s, that a flight of it is given beyond.
@@ -140,7 +127,8 @@ fn duration_s(local: &Local, once_s: f64) -> f64 {
 
 /// The route of a scenario's text, and what it asks of the paper's vehicle.
 fn checked(text: &str) -> Result<(Report, RouteSpec), Box<dyn Error>> {
-    let scenario = Scenario::parse("route.toml", text)?;
+    // Its lines are those of a file that is not written.
+    let scenario = Scenario::parse("route.toml", text).map_err(|error| error.message)?;
     let Law::Follow { path, .. } = scenario.controller.law else { return Err("no path".into()) };
     let vehicle = Vehicle::new(VehicleParams::paper())?;
     let report = path.check(&vehicle, &Limits::of(&vehicle))?;

@@ -1,6 +1,7 @@
 //! `tune`: poles and observer bandwidths for a scenario.
 
 use clap::Args;
+use hil_sim::describe::input::argument;
 use hil_sim::describe::scenario::{self, Scenario};
 use hil_sim::fly::flight::Control;
 use hil_sim::report;
@@ -26,24 +27,21 @@ pub struct TuneArguments {
     #[arg(value_name = "SCENARIO")]
     file: Option<PathBuf>,
     /// Flights for each setting.
-    #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, default_value_t = 20, value_name = "N", value_parser = argument(1..=100_000_u32, ""))]
     runs: u32,
     #[command(flatten)]
     many: Many,
     /// s of the poles s·{-1, ..., -6} to try.
-    #[arg(long, value_name = "S,S,...", value_delimiter = ',', default_values_t = tune::SCALES)]
+    #[arg(long, value_name = "S,S,...", value_delimiter = ',', default_values_t = tune::SCALES, allow_hyphen_values = true, value_parser = argument(0.01..=100.0, ""))]
     scales: Vec<f64>,
     /// Bandwidths of the observers to try, rad/s; 0 is off.
-    #[arg(long, value_name = "RAD_S,...", value_delimiter = ',', default_values_t = tune::BANDWIDTHS)]
+    #[arg(long, value_name = "RAD_S,...", value_delimiter = ',', default_values_t = tune::BANDWIDTHS, allow_hyphen_values = true, value_parser = argument(0.0..=100.0, "rad/s"))]
     bandwidths: Vec<f64>,
 }
 
 /// Flies, prints the table and the trade, writes the files.
 pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
     let TuneArguments { file, runs, many, scales, bandwidths } = arguments;
-    if let Some(wrong) = scales.iter().find(|scale| !(0.01..=100.0).contains(*scale)) {
-        return Err(format!("--scales {wrong}: outside 0.01 to 100").into());
-    }
     let (name, text) = match file {
         Some(file) => {
             let name = file.display().to_string();
@@ -51,6 +49,9 @@ pub fn tune(common: &Common, arguments: &TuneArguments) -> Ended {
             let text = match (fs::read_to_string(file), built_in) {
                 (Ok(text), _) => text,
                 (Err(error), Some((_, text))) if error.kind() == io::ErrorKind::NotFound => (*text).to_owned(),
+                (Err(error), None) if error.kind() == io::ErrorKind::NotFound => {
+                    return Err(super::load::absent(file, "scenario", scenario::builtin_names()));
+                }
                 (Err(error), _) => return Err(format!("{name}: {error}").into()),
             };
             (name, text)

@@ -6,6 +6,7 @@ use rig::Refused;
 use serde::de::{DeserializeOwned, Deserializer};
 use std::fmt::Display;
 use std::ops::RangeInclusive;
+use std::str::FromStr;
 
 /// A field that cannot be used, and why.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -71,10 +72,15 @@ pub fn read<'de, T: DeserializeOwned>(at: &str, value: impl Deserializer<'de>) -
 /// this program's types.
 fn in_words(message: &str) -> String {
     let said = message.split_once("\nin `").map_or(message, |(said, _)| said).trim_end();
+    // A word of a list, where something else stands.
+    if said.contains("unit variant") || said.starts_with("wanted exactly 1 element") {
+        return "one word is wanted".to_owned();
+    }
     let Some((said, wanted)) = said.rsplit_once(", expected ") else { return said.to_owned() };
     let wanted = match wanted {
         "f64" => "a number",
         "u32" | "u64" | "usize" => "a whole number of at least 0",
+        wanted if wanted.starts_with("struct ") => "a table",
         wanted => wanted,
     };
     format!("{said}, expected {wanted}")
@@ -89,6 +95,23 @@ pub fn within<N: PartialOrd + Display + Copy>(field: &str, value: N, range: Rang
         Ok(value)
     } else {
         Err(Invalid::new(field, format_args!("{value} is outside {} to {}", range.start(), range.end())))
+    }
+}
+
+/// Reads an argument of the command line, a number in `range`, or says which it may be.
+pub fn argument<N>(
+    range: RangeInclusive<N>,
+    unit: &'static str,
+) -> impl Fn(&str) -> Result<N, String> + Clone + Send + Sync + 'static
+where
+    N: FromStr + PartialOrd + Display + Clone + Send + Sync + 'static,
+{
+    move |text| {
+        let inside = text.parse().ok().filter(|value| range.contains(value));
+        inside.ok_or_else(|| {
+            let whole = if "0.5".parse::<N>().is_ok() { "" } else { "whole " };
+            format!("a {whole}number from {} to {} {unit}", range.start(), range.end()).trim_end().to_owned()
+        })
     }
 }
 

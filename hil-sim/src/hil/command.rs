@@ -8,6 +8,7 @@ use comfy_table::Table;
 use serde::Serialize;
 
 use super::{Emulator, Endpoint, HilError, Options, Pace, Station, Statistics, Target, USUAL, mission};
+use crate::describe::input::argument;
 use crate::describe::mission::{Home, home};
 use crate::describe::parameters::{Unsupported, parameters};
 use crate::describe::scenario::Scenario;
@@ -44,7 +45,7 @@ pub struct Arguments {
     #[command(flatten)]
     pub place: Place,
     /// Baud rate of the serial port.
-    #[arg(long, default_value_t = 921_600)]
+    #[arg(long, default_value_t = 921_600, value_parser = argument(300..=20_000_000_u32, "baud"))]
     pub baud: u32,
     /// QEMU's machine for the image: netduinoplus2 or olimex-stm32-h405 (STM32F405), mps2-an386
     /// (Cortex-M4F), mps2-an500 (Cortex-M7).
@@ -77,15 +78,8 @@ pub struct Arguments {
     #[arg(long, value_name = "LAT,LON,ALT", value_parser = home, allow_hyphen_values = true, default_value = HOME)]
     pub home: Home,
     /// Seconds without an answer after which the target is lost.
-    #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = patience)]
+    #[arg(long, default_value_t = 5.0, value_name = "S", value_parser = argument(0.1..=3600.0, "s"))]
     pub patience: f64,
-}
-
-fn patience(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(seconds) if (0.1..=3600.0).contains(&seconds) => Ok(seconds),
-        _ => Err("0.1 to 3600".to_owned()),
-    }
 }
 
 /// What the link did in one flight.

@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::datagrams::Datagrams;
@@ -18,7 +18,10 @@ pub struct Emulator {
     child: Child,
     socket: UdpSocket,
     endpoint: Endpoint,
-    stderr: Arc<Mutex<String>>,
+    /// What it writes until it ends.
+    stderr: Option<JoinHandle<String>>,
+    /// What it wrote.
+    said: String,
     /// log2 of the virtual nanoseconds an instruction takes, where instructions are counted.
     shift: Option<u32>,
     machine: String,
@@ -59,21 +62,16 @@ impl Emulator {
             .stderr(Stdio::piped())
             .spawn()
             .map_err(|source| HilError::NoEmulator { program: PROGRAM.to_owned(), source })?;
-        let stderr = Arc::new(Mutex::new(String::new()));
-        if let Some(mut pipe) = child.stderr.take() {
-            let stderr = Arc::clone(&stderr);
-            // Ends with the child; what it writes must not block it.
+        // Ends with the child; what it writes must not block it.
+        let stderr = child.stderr.take().map(|mut pipe| {
             std::thread::spawn(move || {
-                let mut bytes = [0; 512];
-                while let Ok(count @ 1..) = pipe.read(&mut bytes) {
-                    if let Ok(mut text) = stderr.lock() {
-                        text.push_str(&String::from_utf8_lossy(&bytes[..count]));
-                    }
-                }
-            });
-        }
+                let mut bytes = Vec::new();
+                let _ = pipe.read_to_end(&mut bytes);
+                String::from_utf8_lossy(&bytes).into_owned()
+            })
+        });
         let endpoint = Endpoint::Udp(format!("127.0.0.1:{port}"));
-        Ok(Self { child, socket, endpoint, stderr, shift, machine: machine.to_owned() })
+        Ok(Self { child, socket, endpoint, stderr, said: String::new(), shift, machine: machine.to_owned() })
     }
 
     /// 2⁶ ns an instruction: more than a tick of either machine's cycle counter, so that none is
@@ -139,10 +137,12 @@ impl Emulator {
         }
     }
 
-    fn died(&self, status: String) -> HilError {
-        let text = self.stderr.lock().map(|text| text.clone()).unwrap_or_default();
-        let stderr = text.lines().collect::<Vec<_>>().join("; ");
-        HilError::EmulatorDied { status, stderr }
+    fn died(&mut self, status: String) -> HilError {
+        let _ = self.child.kill();
+        if let Some(all) = self.stderr.take().and_then(|reader| reader.join().ok()) {
+            self.said = all;
+        }
+        HilError::EmulatorDied { status, stderr: self.said.lines().collect::<Vec<_>>().join("; ") }
     }
 }
 

@@ -6,6 +6,7 @@ use controller::{Vector3, Waypoint};
 use geojson::{GeoJson, GeometryValue};
 use kml::types::{AltitudeMode, Coord, Geometry};
 use kml::{Kml, KmlReader};
+use quick_xml::events::Event;
 
 use super::{Defaults, Home, Local, LocalEdge, MissionError, NO_HOME, NO_TERRAIN, csv, is_place, placed};
 
@@ -84,6 +85,9 @@ impl Map {
                 waypoints.push(Waypoint { point, corner: Some(corner_m), speed, yaw: None, stop: None });
             }
         }
+        if waypoints.len() < 2 {
+            return Err(MissionError("all points are one where a route needs at least 2".to_owned()));
+        }
         let polygon = |corners: &Vec<[f64; 2]>| {
             let corner = |place: &[f64; 2]| needed().and_then(|home| from_home(home, *place, home.altitude));
             Ok((true, LocalEdge::Polygon(corners.iter().map(corner).collect::<Result<_, MissionError>>()?)))
@@ -117,9 +121,10 @@ fn from_home(home: Home, [latitude, longitude]: [f64; 2], altitude: f64) -> Resu
 
 /// A table: its points in the order flown.
 pub fn table(file: &str, text: &str) -> Result<Map, MissionError> {
-    // Its own errors name the file.
-    let within = |error: csv::PointsError| {
-        MissionError(error.to_string().trim_start_matches(file).trim_start_matches(':').trim_start().to_owned())
+    // Whoever asks names the file.
+    let within = |csv::PointsError { line, column, message, .. }| {
+        let column = column.map_or(String::new(), |column| format!("column {column}: "));
+        MissionError(format!("line {line}: {column}{message}"))
     };
     let csv::Rows { columns, rows } = csv::rows(file, text, 100_000).map_err(within)?;
     let points = rows.iter().map(|(_, point)| columns.spot(point)).collect();
@@ -128,10 +133,26 @@ pub fn table(file: &str, text: &str) -> Result<Map, MissionError> {
 
 /// KML: placemarks' lines and points; one that is named home is that.
 pub fn kml(text: &str) -> Result<Map, MissionError> {
+    closed(text)?;
     let read: Kml<f64> = KmlReader::from_string(text).read().map_err(MissionError::new)?;
     let mut map = Map::default();
     take_kml(&read, &mut map)?;
     map.checked()
+}
+
+/// That whatever is opened in an XML text is closed: KML's reader looks for that for ever.
+fn closed(text: &str) -> Result<(), MissionError> {
+    let mut reader = quick_xml::Reader::from_str(text);
+    let mut open = 0_usize;
+    loop {
+        match reader.read_event().map_err(MissionError::new)? {
+            Event::Start(_) => open += 1,
+            Event::End(_) => open = open.saturating_sub(1),
+            Event::Eof if open == 0 => return Ok(()),
+            Event::Eof => return Err(MissionError("the file ends before its last element does".to_owned())),
+            _ => {}
+        }
+    }
 }
 
 fn take_kml(element: &Kml<f64>, map: &mut Map) -> Result<(), MissionError> {
@@ -249,10 +270,19 @@ fn take_feature(feature: &geojson::Feature, map: &mut Map) -> Result<(), Mission
         (name.is_some_and(|name| name.eq_ignore_ascii_case("home")), &geometry.value)
     {
         let altitude = coordinates.as_slice().get(2).copied().unwrap_or(0.0);
-        map.home = Some(Home { latitude: coordinates[1], longitude: coordinates[0], altitude });
+        let [latitude, longitude] = corner(coordinates)?;
+        map.home = Some(Home { latitude, longitude, altitude });
         return Ok(());
     }
     take_json(&geometry.value, map)
+}
+
+/// Latitude and longitude of a position.
+fn corner(position: &geojson::Position) -> Result<[f64; 2], MissionError> {
+    match *position.as_slice() {
+        [longitude, latitude, ..] => Ok([latitude, longitude]),
+        _ => Err(MissionError("a position without longitude and latitude".to_owned())),
+    }
 }
 
 fn take_json(geometry: &GeometryValue, map: &mut Map) -> Result<(), MissionError> {
@@ -274,8 +304,8 @@ fn take_json(geometry: &GeometryValue, map: &mut Map) -> Result<(), MissionError
         }
         GeometryValue::Polygon { coordinates } => {
             let outer = coordinates.first().into_iter().flatten();
-            let corners = outer.map(|position| [position[1], position[0]]).collect();
-            map.inside.push(polygon_of(corners));
+            let corners: Result<_, MissionError> = outer.map(corner).collect();
+            map.inside.push(polygon_of(corners?));
         }
         GeometryValue::GeometryCollection { geometries } => {
             geometries.iter().try_for_each(|geometry| take_json(&geometry.value, map))?;

@@ -208,13 +208,18 @@ impl Line {
         let command = u16::try_from(command).map_err(|_| format!("{command} is no MAV_CMD"))?;
         let frame = u8::try_from(frame).map_err(|_| format!("{frame} is no MAV_FRAME"))?;
         let step = if frame == MavFrame::MAV_FRAME_LOCAL_NED as u8 { METRES } else { DEGREES };
-        let steps = |value: f64| match (value / step).round() {
+        let steps = |name: &str, value: f64| match (value / step).round() {
             none if none.is_nan() => Ok(i32::MAX),
             steps if steps.abs() < f64::from(i32::MAX) => Ok(steps as i32),
-            _ => Err(format!("{value} is too far: within ±{:.0}", f64::from(i32::MAX) * step)),
+            _ => Err(format!("{name} {value} is outside ±{:.0}", f64::from(i32::MAX) * step)),
+        };
+        let [x, y] = if step == METRES {
+            [steps("x", x)?, steps("y", y)?]
+        } else {
+            [steps("latitude", x)?, steps("longitude", y)?]
         };
         let params = [p1, p2, p3, p4].map(|param| param as f32);
-        Ok(Item { command, frame, current: 0, autocontinue: 1, params, x: steps(x)?, y: steps(y)?, z: z as f32 })
+        Ok(Item { command, frame, current: 0, autocontinue: 1, params, x, y, z: z as f32 })
     }
 }
 
@@ -259,15 +264,21 @@ pub fn waypoints(text: &str) -> Read<Items> {
 
 /// A plan of QGroundControl.
 pub fn plan(value: &Value) -> Read<Items> {
-    let mission = value.get("mission").ok_or_else(|| MissionError("the plan has no mission".to_owned()))?;
+    let mission = table(value, "", "mission")?.ok_or_else(|| MissionError("the plan has no mission".to_owned()))?;
     let mut items = Items::default();
-    if let Some([latitude, longitude, altitude]) = numbers(mission.get("plannedHomePosition")) {
-        items.home = Some(Home { latitude, longitude, altitude });
+    if let Some(home) = list(mission, "mission", "plannedHomePosition")? {
+        let home: [f64; 3] = numbers(home, "mission: plannedHomePosition")?;
+        let [latitude, longitude, altitude] = home;
+        // One that is not known stands there as null.
+        items.home = home.iter().all(|number| number.is_finite()).then_some(Home { latitude, longitude, altitude });
     }
     let mut names = Vec::new();
-    take_items(&mut items, &mut names, mission.get("items"))?;
+    let given = list(mission, "mission", "items")?;
+    take_items(&mut items, &mut names, given.ok_or_else(|| MissionError("mission: it has no items".to_owned()))?)?;
     items.resolve_jumps(&names)?;
-    fences(value.get("geoFence"), &mut items)?;
+    if let Some(fence) = table(value, "", "geoFence")? {
+        fences(fence, &mut items)?;
+    }
     // Stations reckon the time with it, and send it to no vehicle.
     if let Some(speed) = mission.get("hoverSpeed").and_then(Value::as_f64) {
         items
@@ -282,77 +293,106 @@ pub fn plan(value: &Value) -> Read<Items> {
 }
 
 /// Takes items in, with the `names` that jumps have for them.
-fn take_items(items: &mut Items, names: &mut Vec<u64>, given: Option<&Value>) -> Done {
-    for item in given.and_then(Value::as_array).into_iter().flatten() {
+fn take_items(items: &mut Items, names: &mut Vec<u64>, given: &[Value]) -> Done {
+    for item in given {
         // Stations count the home as 0.
         let number = items.mission.len() as u64 + 1;
-        let error = |message: &str| MissionError(format!("item {number}: {message}"));
+        let at = format!("item {number}");
         match item.get("type").and_then(Value::as_str) {
             Some("SimpleItem") => {
-                let whole = |name: &str| item.get(name).and_then(Value::as_u64);
-                let (Some(command), Some(frame)) = (whole("command"), whole("frame")) else {
-                    return Err(error("it has no command or no frame"));
-                };
-                let mut params = [f64::NAN; 7];
-                let given = item.get("params").and_then(Value::as_array).ok_or_else(|| error("no params"))?;
-                if given.len() != params.len() {
-                    return Err(error(&format!("{} params where an item has 7", given.len())));
-                }
-                for (param, given) in params.iter_mut().zip(given) {
-                    // null is a number that is not given.
-                    *param = given.as_f64().unwrap_or(f64::NAN);
-                }
-                names.push(whole("doJumpId").unwrap_or(number));
+                let (command, frame) = (whole(item, &at, "command")?, whole(item, &at, "frame")?);
+                let params = numbers(list(item, &at, "params")?.unwrap_or_default(), &format!("{at}: params"))?;
+                names.push(if item.get("doJumpId").is_some() { whole(item, &at, "doJumpId")? } else { number });
                 items.take(number, &Line { command, frame, params })?;
             }
             Some("ComplexItem") => {
                 // A survey holds the items that it is flown by.
-                let inner = item.get("TransectStyleComplexItem").and_then(|style| style.get("Items"));
-                let inner = inner.or_else(|| item.get("Items"));
+                let style = table(item, &at, "TransectStyleComplexItem")?.unwrap_or(item);
                 let kind = item.get("complexItemType").and_then(Value::as_str).unwrap_or("a complex item");
-                if inner.is_none() {
-                    return Err(error(&format!("{kind} holds no items to fly by")));
-                }
+                let inner = list(style, &at, "Items")?;
+                let inner = inner.ok_or_else(|| MissionError(format!("{at}: {kind} holds no items to fly by")))?;
                 take_items(items, names, inner)?;
             }
-            other => return Err(error(&format!("its type is {other:?}: SimpleItem or ComplexItem"))),
+            _ => return Err(wrong(&at, "type", item, "SimpleItem or ComplexItem")),
         }
     }
     Ok(())
 }
 
-fn fences(fence: Option<&Value>, items: &mut Items) -> Done {
-    let list = |name: &str| {
-        let shapes = fence.and_then(|fence| fence.get(name)).and_then(Value::as_array).into_iter().flatten();
-        shapes.zip(1..)
+fn fences(fence: &Value, items: &mut Items) -> Done {
+    let shapes = |name: &str| Ok(list(fence, "geoFence", name)?.unwrap_or_default().iter().zip(1..));
+    let command = |shape: &Value, at: &str, inside: MavCmd, outside: MavCmd| match shape.get("inclusion") {
+        None | Some(Value::Bool(true)) => Ok(inside),
+        Some(Value::Bool(false)) => Ok(outside),
+        Some(_) => Err(wrong(at, "inclusion", shape, "true or false")),
     };
-    let is_inside = |shape: &Value| shape.get("inclusion").and_then(Value::as_bool).unwrap_or(true);
-    let unclear = || MissionError("geoFence: a shape that is no polygon of corners and no circle".to_owned());
-    for (shape, number) in list("polygons") {
-        let command = match is_inside(shape) {
-            true => MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
-            false => MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION,
-        };
-        let corners = shape.get("polygon").and_then(Value::as_array).ok_or_else(unclear)?;
-        for corner in corners {
-            let place = numbers(Some(corner)).ok_or_else(unclear)?;
-            items.take_fence(command, corners.len() as f64, place, format!("geoFence polygon {number}"))?;
+    for (shape, number) in shapes("polygons")? {
+        let at = format!("geoFence polygon {number}");
+        let (inside, outside) =
+            (MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, MavCmd::MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION);
+        let command = command(shape, &at, inside, outside)?;
+        let corners = list(shape, &at, "polygon")?.unwrap_or_default();
+        if corners.len() < 3 {
+            return Err(MissionError(format!("{at}: {} corners where a polygon has at least 3", corners.len())));
+        }
+        for (corner, index) in corners.iter().zip(1..) {
+            let place = numbers(corner.as_array().map_or(&[][..], Vec::as_slice), &format!("{at}: corner {index}"))?;
+            items.take_fence(command, corners.len() as f64, place, at.clone())?;
         }
     }
-    for (shape, number) in list("circles") {
-        let command = match is_inside(shape) {
-            true => MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
-            false => MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION,
-        };
-        let circle = shape.get("circle").ok_or_else(unclear)?;
-        let center = numbers(circle.get("center")).ok_or_else(unclear)?;
-        let radius = circle.get("radius").and_then(Value::as_f64).ok_or_else(unclear)?;
-        items.take_fence(command, radius, center, format!("geoFence circle {number}"))?;
+    for (shape, number) in shapes("circles")? {
+        let at = format!("geoFence circle {number}");
+        let (inside, outside) =
+            (MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION, MavCmd::MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION);
+        let command = command(shape, &at, inside, outside)?;
+        let circle = table(shape, &at, "circle")?.unwrap_or(&Value::Null);
+        let center = numbers(list(circle, &at, "center")?.unwrap_or_default(), &format!("{at}: center"))?;
+        let radius = circle.get("radius").and_then(Value::as_f64);
+        let radius = radius.ok_or_else(|| wrong(&at, "radius", circle, "a number"))?;
+        items.take_fence(command, radius, center, at)?;
     }
     Ok(())
 }
 
-fn numbers<const N: usize>(value: Option<&Value>) -> Option<[f64; N]> {
-    let numbers: Vec<f64> = value?.as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?;
-    numbers.try_into().ok()
+/// That the field `name` of what stands `at` is not what is `wanted`.
+fn wrong(at: &str, name: &str, of: &Value, wanted: &str) -> MissionError {
+    let colon = if at.is_empty() { "" } else { ": " };
+    let is = of.get(name).map_or("is missing".to_owned(), |value| {
+        let mut shown: String = value.to_string().chars().take(40).collect();
+        if shown.len() < value.to_string().len() {
+            shown.push('…');
+        }
+        format!("is {shown}")
+    });
+    MissionError(format!("{at}{colon}{name} {is}: {wanted} is wanted"))
+}
+
+/// A table that may be left out.
+fn table<'a>(of: &'a Value, at: &str, name: &str) -> Read<Option<&'a Value>> {
+    match of.get(name) {
+        None | Some(Value::Null) => Ok(None),
+        Some(table @ Value::Object(_)) => Ok(Some(table)),
+        Some(_) => Err(wrong(at, name, of, "an object")),
+    }
+}
+
+/// A list that may be left out.
+fn list<'a>(of: &'a Value, at: &str, name: &str) -> Read<Option<&'a [Value]>> {
+    match of.get(name) {
+        None | Some(Value::Null) => Ok(None),
+        Some(Value::Array(list)) => Ok(Some(list)),
+        Some(_) => Err(wrong(at, name, of, "a list")),
+    }
+}
+
+fn whole(of: &Value, at: &str, name: &str) -> Read<u64> {
+    of.get(name).and_then(Value::as_u64).ok_or_else(|| wrong(at, name, of, "a whole number"))
+}
+
+/// So many numbers; null is one that is not given.
+fn numbers<const N: usize>(list: &[Value], at: &str) -> Read<[f64; N]> {
+    let number = |value: &Value| if value.is_null() { Some(f64::NAN) } else { value.as_f64() };
+    let numbers: Option<Vec<f64>> = list.iter().map(number).collect();
+    let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+    numbers.ok_or_else(|| MissionError(format!("{at}: {N} numbers are wanted")))
 }

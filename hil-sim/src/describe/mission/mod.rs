@@ -117,6 +117,8 @@ pub fn read(file: &str, text: &str) -> Result<Mission, MissionError> {
         let value: serde_json::Value = serde_json::from_str(text).map_err(MissionError::new)?;
         if value.get("fileType").is_some_and(|kind| kind == "Plan") {
             mavlink::plan(&value).map(Mission::Items)
+        } else if value.get("type").is_none() {
+            Err(MissionError("neither a plan, with \"fileType\": \"Plan\", nor GeoJSON, with a \"type\"".to_owned()))
         } else {
             map::geojson(text).map(Mission::Map)
         }

@@ -149,6 +149,7 @@ impl Campaign {
         let CampaignFields { title, runs, ground_p3, scenario, start, variables, draw, approach } = read("", table)?;
         start.check()?;
         within("runs", runs, 1..=100_000_000)?;
+        ground_p3.map(|p3| within("ground_p3", p3, -1e5..=1e5)).transpose()?;
         let walked = Mutex::default();
         let campaign = Self { title, runs, ground_p3, approach, scenario, start, variables, draw, walked };
         // Most mistakes show in the first flights; the others end the campaign with their flight's

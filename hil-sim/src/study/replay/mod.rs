@@ -26,6 +26,9 @@ use crate::report::log::ReadError;
 use logged::Logged;
 use pass::Pass;
 
+/// The longest flight, s.
+const LONGEST_S: f64 = 1e5;
+
 /// A log that can't be replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum ReplayError {
@@ -52,6 +55,14 @@ pub enum ReplayError {
         least: f64,
         /// There, s.
         most: f64,
+    },
+    /// More than a flight lasts.
+    #[error("--from {from} --to {to} are {:.0} s, at most {LONGEST_S}: has the log's clock jumped?", to - from)]
+    Long {
+        /// s.
+        from: f64,
+        /// s.
+        to: f64,
     },
     /// The scenario's numbers do not make a controller or a filter.
     #[error(transparent)]
@@ -84,6 +95,9 @@ pub fn replay(mut scenario: Scenario, bytes: &[u8], part: &Part) -> Result<Outco
     if to - from < period {
         let (from, to) = (part.from_s.unwrap_or(least), part.to_s.unwrap_or(most));
         return Err(ReplayError::Window { from, to, least, most });
+    }
+    if to - from > LONGEST_S {
+        return Err(ReplayError::Long { from, to });
     }
     scenario.duration_s = to - from;
     let begun = ThreadTime::now();
