@@ -253,6 +253,15 @@ fn a_number_that_an_option_does_not_take_is_answered_with_its_range() {
     }
 }
 
+#[test]
+fn a_ground_station_that_nothing_reaches_is_named() {
+    for address in ["nowhere", "127.0.0.1:0"] {
+        let output = program().args(["hil", &format!("--station={address}"), "--quiet"]).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(1), "{address}");
+        assert!(text(&output.stderr).contains(address), "{}", text(&output.stderr));
+    }
+}
+
 /// Long before the hours that the flights would take.
 #[test]
 fn a_folder_that_cannot_be_written_to_is_named_before_anything_is_flown() {

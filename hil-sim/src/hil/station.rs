@@ -30,7 +30,9 @@ impl Station {
     pub fn open(address: &str) -> Result<Self, HilError> {
         let refused = |source| HilError::Station { address: address.to_owned(), source };
         let open = || {
-            let peer = address.to_socket_addrs()?.next().ok_or(io::ErrorKind::AddrNotAvailable)?;
+            // Nobody listens at port 0.
+            let peer = address.to_socket_addrs()?.find(|peer| peer.port() != 0);
+            let peer = peer.ok_or(io::ErrorKind::AddrNotAvailable)?;
             // From this machine alone, where the station is here.
             let own: SocketAddr = match (peer.is_ipv4(), peer.ip().is_loopback()) {
                 (true, true) => (Ipv4Addr::LOCALHOST, 0).into(),
