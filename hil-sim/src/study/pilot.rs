@@ -164,13 +164,16 @@ mod tests {
         assert_eq!(seen.on_ground, [true, true], "{seen:?}");
     }
 
-    /// In hold load, attitude and body rate are each not measured for two seconds, as `null` or as
+    /// In hold UAV, load, attitude and body rate are each not measured for two seconds, as `null` or as
     /// NaN: the vehicle stays where it is, says what is missing, and lands.
     #[test]
     fn what_is_not_measured_is_null() {
         let scenario = Scenario::parse("pilot.toml", TEXT).unwrap();
         for (fields, fault) in [
-            (&["position", "velocity"][..], "state: position"),
+            (&["uav_position"][..], "state: rod"),
+            (&["uav_velocity"], "state: rodrate"),
+            (&["uav_position", "uav_velocity"], "state: rod"),
+            (&["position", "velocity"], "state: position"),
             (&["attitude"], "state: attitude"),
             (&["body_rate"], "state: bodyrate"),
         ] {

@@ -290,7 +290,9 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         if self.fault != Some(Fault::Caught) {
             self.fault = Some(fault);
         }
-        match (uav, fault) {
+        let filled = measured.uav.filter(|_| uav.is_none());
+        let filled = filled.and_then(|uav| self.fill(uav, measured.specific_force.as_ref()));
+        match (uav.or(filled.as_ref()), fault) {
             (None, _) | (_, Fault::State(Channel::Attitude)) => self.without_state(),
             (Some(uav), _) => self.without_load(uav, measured.specific_force),
         }

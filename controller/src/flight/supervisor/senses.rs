@@ -39,6 +39,32 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
     }
 
+    /// The UAV in flight with what is missing of its position and velocity: the one is where the other
+    /// leads, and that is where the forces do.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn fill(&mut self, uav: &Uav<T>, specific: Option<&Vector3<T>>) -> Option<Uav<T>> {
+        let is_flying = !matches!(self.mode, Mode::Off | Mode::Idle | Mode::Fault);
+        if !(is_flying && self.motion.has_uav()) {
+            return None;
+        }
+        let mut uav = *uav;
+        let is_lost = uav.check() == Err(Channel::UavPosition);
+        if is_lost {
+            uav.position = Vector3::zeros();
+        }
+        if uav.check() == Err(Channel::UavVelocity) {
+            uav.velocity = self.carried_velocity(&uav.attitude, specific);
+        }
+        uav.check().ok()?;
+        if is_lost {
+            uav.position = self.motion.carry(&uav.velocity);
+        } else {
+            self.motion.see_uav(&uav);
+        }
+        Some(uav)
+    }
+
     /// The UAV's velocity by the forces on it, m/s.
     fn carried_velocity(&self, attitude: &Matrix3<T>, specific: Option<&Vector3<T>>) -> Vector3<T> {
         let thrust = self.sampler.applied().thrust;
