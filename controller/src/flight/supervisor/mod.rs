@@ -292,9 +292,14 @@ impl<T: Real, L: Law<T>, A: Actuation<T>> Supervisor<T, L, A> {
         }
         let filled = measured.uav.filter(|_| uav.is_none());
         let filled = filled.and_then(|uav| self.fill(uav, measured.specific_force.as_ref()));
-        match (uav.or(filled.as_ref()), fault) {
-            (None, _) | (_, Fault::State(Channel::Attitude)) => self.without_state(),
-            (Some(uav), _) => self.without_load(uav, measured.specific_force),
+        // Of an attitude that stands still the UAV has no other.
+        let has_attitude = |uav: &&Uav<T>| {
+            fault != Fault::State(Channel::Attitude)
+                || measured.state.is_none_or(|state| state.attitude != uav.attitude)
+        };
+        match uav.or(filled.as_ref()).filter(has_attitude) {
+            Some(uav) => self.without_load(uav, measured.specific_force),
+            None => self.without_state(),
         }
     }
 
